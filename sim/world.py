@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from zavis_bt.types import FREE, GridMap, Pose2D
+from zavis_bt.types import FREE, FloatArray, GridMap, Pose2D
 
 _TOUCH = 1e-9  # [m] two edges this close touch
 _SHARED = ("occupied", "furniture_cells", "walls")  # what depends on the map and the furniture alone
@@ -110,14 +110,15 @@ class World:
         cols = np.arange(math.ceil(u - reach), math.floor(u + reach) + 1)
         rows = np.arange(math.ceil(v - reach), math.floor(v + reach) + 1)
         near = (rows[:, None] - v) ** 2 + (cols - u) ** 2 < (reach - _TOUCH) ** 2
-        return not bool((near & self._blocked(rows, cols)).any()) and self.grid.state_at(x, y) == FREE
+        return not bool((near & self._blocked(rows, cols)).any())
 
     def _blocked(self, rows: NDArray[np.intp], cols: NDArray[np.intp]) -> NDArray[np.bool_]:
         """Return (len(rows), len(cols)) which cells of the window are not free or outside."""
         height, width = self.grid.shape
-        window = self.occupied[np.ix_(rows.clip(0, height - 1), cols.clip(0, width - 1))]
-        outside = (rows != rows.clip(0, height - 1))[:, None] | (cols != cols.clip(0, width - 1))
-        return window | outside
+        inside_rows, inside_cols = rows.clip(0, height - 1), cols.clip(0, width - 1)
+        blocked: NDArray[np.bool_] = self.occupied[np.ix_(inside_rows, inside_cols)]
+        blocked |= (rows != inside_rows)[:, None] | (cols != inside_cols)
+        return blocked
 
 
 def mark_touched(touched: NDArray[np.bool_], grid: GridMap, piece: Furniture) -> None:
@@ -138,12 +139,13 @@ def mark_touched(touched: NDArray[np.bool_], grid: GridMap, piece: Furniture) ->
 
 def _centres_within(
     centre: float, reach: float, origin: float, resolution: float, count: int
-) -> tuple[slice, NDArray[np.float64]]:
+) -> tuple[slice, FloatArray]:
     """Return the cells of one axis whose centres are within reach of a coordinate, and those centres [m]."""
     first = max(math.ceil((centre - reach - origin) / resolution - 0.5), 0)
     last = min(math.floor((centre + reach - origin) / resolution - 0.5), count - 1)
-    cells = np.arange(first, max(last + 1, first))
-    return slice(first, max(last + 1, first)), (cells + 0.5) * resolution + origin
+    cells = np.arange(first, max(last + 1, first), dtype=np.float64)
+    centres: FloatArray = (cells + 0.5) * resolution + origin
+    return slice(first, max(last + 1, first)), centres
 
 
 def _read_only(array: NDArray[np.bool_]) -> NDArray[np.bool_]:
