@@ -1,0 +1,192 @@
+"""One LiDAR scan into a grid of log-odds, every cell at most once."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from zavis_bt.mapping.scanline import polygon_spans
+from zavis_bt.mapping.visible_area import HIT, Beams, corners, free_outline
+
+LogOddsArray = NDArray[np.float32]
+Cells = tuple[NDArray[np.int64], NDArray[np.float32]]
+"""Flat indices of cells, and their values before the scan."""
+
+_NUDGE = 0.05  # a surface lies on the far side of its hit: its cell is looked up this far behind the hit [cells]
+_LONGEST_STRETCH = 64  # of surface between two hits [cells]
+
+
+class SensorModel(NamedTuple):
+    """What a reading is worth, in log-odds of a cell being occupied."""
+
+    hit: float = 0.9
+    """For the cell a beam ended in."""
+    miss: float = -0.4
+    """For a cell the beams leave no room to hide in, or that a beam went through."""
+    gap: float = -0.3
+    """Floor for cells between beams further apart than a cell: they become free if nothing was ever seen there, but
+    a thin thing between two beams is no less there for having been missed."""
+    surface: float = 0.3
+    """Floor for cells between neighbouring hits on one surface, unless they were seen to be free: a wall whose cells
+    are only hit here and there, being far or seen at a flat angle, is closed all the same until a closer look."""
+    low: float = -2.0
+    """Least value, so that what changes is noticed soon."""
+    high: float = 3.5
+    """Greatest value."""
+
+
+@njit(cache=True)
+def update(
+    log_odds: LogOddsArray,
+    x: float,
+    y: float,
+    beams: Beams,
+    step: float,
+    cell: float,
+    model: SensorModel,
+) -> None:
+    """Fuse a scan whose beams all end inside the grid.
+
+    Hits win over misses; so does the stretch of surface between two hits, since beams that graze a wall pass
+    through cells which the wall fills only in part.
+
+    Args:
+        log_odds: (rows, cols), changed in place.
+        x: Sensor [cells].
+        y: Sensor [cells].
+        beams: From `trace`.
+        step: Angle between neighbouring beams [rad].
+        cell: Side of a cell [m].
+        model: Weights of hits and misses.
+    """
+    cos, sin, reach, _kinds = beams
+    rows, cols = log_odds.shape
+    dense = cell / abs(step)  # up to this distance neighbouring beams are at most a cell apart
+    outline = free_outline(reach, step, cell)
+    hits, before_hits = _hit_cells(log_odds, x, y, beams, cell)
+    surface, before_surface = _surface_cells(log_odds, x, y, beams, outline, cell)
+
+    xs, ys = corners(outline, dense, cos, sin, x, y, cell)
+    offsets, columns = polygon_spans(xs, ys, rows, cols)
+    _lower(log_odds, offsets, columns, model.miss, model.low)
+    if reach.max() > dense:
+        _lower_along_beams(log_odds, x, y, beams, outline, dense, cell, model)
+        xs, ys = corners(outline, np.inf, cos, sin, x, y, cell)
+        offsets, columns = polygon_spans(xs, ys, rows, cols)
+        _open(log_odds, offsets, columns, model.gap)
+
+    flat = log_odds.reshape(-1)
+    for i in range(len(surface)):
+        seen_free = before_surface[i] < 0
+        flat[surface[i]] = before_surface[i] if seen_free else max(before_surface[i], np.float32(model.surface))
+    for i in range(len(hits)):
+        flat[hits[i]] = min(before_hits[i] + model.hit, model.high)
+
+
+@njit(cache=True)
+def _hit_cells(log_odds: LogOddsArray, x: float, y: float, beams: Beams, cell: float) -> Cells:
+    """Find the cells the beams ended in, repeated if hit twice."""
+    cos, sin, reach, kinds = beams
+    flat, cols = log_odds.reshape(-1), log_odds.shape[1]
+    cells = np.empty(len(reach), dtype=np.int64)
+    k = 0
+    for i in range(len(reach)):
+        if kinds[i] == HIT:
+            distance = reach[i] / cell + _NUDGE
+            cells[k] = int(y + distance * sin[i]) * cols + int(x + distance * cos[i])
+            k += 1
+    return cells[:k], flat[cells[:k]]
+
+
+@njit(cache=True)
+def _surface_cells(
+    log_odds: LogOddsArray, x: float, y: float, beams: Beams, outline: NDArray[np.float64], cell: float
+) -> Cells:
+    """Find the cells between neighbouring hits on one surface."""
+    cos, sin, reach, kinds = beams
+    flat, cols, n = log_odds.reshape(-1), log_odds.shape[1], len(reach)
+    cells = np.empty(n * _LONGEST_STRETCH, dtype=np.int64)
+    k = 0
+    for i in range(n):
+        j = (i + 1) % n
+        if kinds[i] != HIT or kinds[j] != HIT or outline[i, 0] != reach[i] or outline[i, 1] != reach[j]:
+            continue  # there may be a shadow between them
+        a, b = reach[i] / cell + _NUDGE, reach[j] / cell + _NUDGE
+        x0, y0, x1, y1 = x + a * cos[i], y + a * sin[i], x + b * cos[j], y + b * sin[j]
+        steps = min(int(max(abs(x1 - x0), abs(y1 - y0))) + 1, _LONGEST_STRETCH)
+        for s in range(1, steps):
+            cells[k] = int(y0 + (y1 - y0) * s / steps) * cols + int(x0 + (x1 - x0) * s / steps)
+            k += 1
+    return cells[:k], flat[cells[:k]]
+
+
+@njit(cache=True)
+def _lower(
+    log_odds: LogOddsArray, offsets: NDArray[np.int64], columns: NDArray[np.int64], miss: float, low: float
+) -> None:
+    """Count a miss for every cell of the spans."""
+    loss, least = np.float32(miss), np.float32(low)  # single precision throughout: twice the cells an instruction
+    for row in range(len(offsets) - 1):
+        for k in range(offsets[row], offsets[row + 1] - 1, 2):
+            values = log_odds[row, columns[k] : columns[k + 1]]
+            for i in range(len(values)):
+                lowered = values[i] + loss
+                values[i] = lowered if lowered > least else least
+
+
+@njit(cache=True)
+def _open(log_odds: LogOddsArray, offsets: NDArray[np.int64], columns: NDArray[np.int64], gap: float) -> None:
+    """Make the cells of the spans free that nothing speaks against; doing so twice changes nothing."""
+    zero, floor = np.float32(0), np.float32(gap)
+    for row in range(len(offsets) - 1):
+        for k in range(offsets[row], offsets[row + 1] - 1, 2):
+            values = log_odds[row, columns[k] : columns[k + 1]]
+            for i in range(len(values)):
+                value = values[i]
+                values[i] = floor if (value <= zero) & (value > floor) else value
+
+
+@njit(cache=True)
+def _lower_along_beams(
+    log_odds: LogOddsArray,
+    x: float,
+    y: float,
+    beams: Beams,
+    outline: NDArray[np.float64],
+    dense: float,
+    cell: float,
+    model: SensorModel,
+) -> None:
+    """Count a miss for the cells that single beams went through beyond the dense part of the scan.
+
+    One cell for each step along the longer axis: the one whose middle the beam comes nearest to, so that beams
+    which only cut a corner say nothing.
+    """
+    cos, sin, reach, kinds = beams
+    miss, low = np.float32(model.miss), np.float32(model.low)
+    for i in range(len(reach)):
+        begin = min(dense, max(outline[i, 0], outline[i - 1, 1])) / cell + 1.0
+        end = reach[i] / cell - (1.0 if kinds[i] == HIT else 0.0)
+        major, minor = (cos[i], sin[i]) if abs(cos[i]) >= abs(sin[i]) else (sin[i], cos[i])
+        steps = int((end - begin) * abs(major))
+        if steps <= 0:
+            continue
+        slope, sign = minor / abs(major), 1 if major > 0 else -1
+        if abs(cos[i]) >= abs(sin[i]):
+            col = math.floor(x + begin * cos[i]) + sign
+            at = y + (col + 0.5 - x) * sin[i] / cos[i]
+            for k in range(steps):
+                row = int(at + k * slope)
+                lowered = log_odds[row, col + k * sign] + miss
+                log_odds[row, col + k * sign] = lowered if lowered > low else low
+        else:
+            row = math.floor(y + begin * sin[i]) + sign
+            at = x + (row + 0.5 - y) * cos[i] / sin[i]
+            for k in range(steps):
+                col = int(at + k * slope)
+                lowered = log_odds[row + k * sign, col] + miss
+                log_odds[row + k * sign, col] = lowered if lowered > low else low
