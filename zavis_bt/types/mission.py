@@ -89,6 +89,10 @@ class Observed(Protocol):
         """Viewpoints still to visit, in their order."""
 
     @property
+    def visited(self) -> tuple[Viewpoint, ...]:
+        """Viewpoints visited so far, in their order."""
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """All candidates so far, in the order they were seen."""
 
