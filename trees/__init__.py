@@ -1,0 +1,1 @@
+"""Missions and baselines as YAML trees, with their parts."""

@@ -1,0 +1,29 @@
+"""A mission from files: robot, tree, models, recording, and its result."""
+
+from zavis_bt.mission.dialogue import Dialogue
+from zavis_bt.mission.human import Nobody, TerminalHuman, WithTimeout
+from zavis_bt.mission.jobs import DoneJob, InlineJobs, ThreadJobs
+from zavis_bt.mission.journal import MissionJournal
+from zavis_bt.mission.mission import Mission, Parts, Task, spl
+from zavis_bt.mission.safety import SafeBase, SafeRobot, SafetySettings
+from zavis_bt.mission.settings import MissionSettings, Search
+
+__all__ = [
+    "Dialogue",
+    "DoneJob",
+    "InlineJobs",
+    "Mission",
+    "MissionJournal",
+    "MissionSettings",
+    "Nobody",
+    "Parts",
+    "SafeBase",
+    "SafeRobot",
+    "SafetySettings",
+    "Search",
+    "Task",
+    "TerminalHuman",
+    "ThreadJobs",
+    "WithTimeout",
+    "spl",
+]

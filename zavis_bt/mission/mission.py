@@ -1,0 +1,317 @@
+"""A mission: one tree, one robot, one thing to find, and how it went."""
+
+from __future__ import annotations
+
+import logging
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from zavis_bt.mapping import Mapper
+from zavis_bt.mission.dialogue import Dialogue
+from zavis_bt.mission.journal import MissionJournal
+from zavis_bt.mission.safety import SafeRobot
+from zavis_bt.mission.settings import MissionSettings, Search
+from zavis_bt.perception import Perceiver
+from zavis_bt.planning import Navigator
+from zavis_bt.protocols import Clock, Detector, Human, Jobs, KnowledgePrior, Matcher, Observer, Robot
+from zavis_bt.tree import Outcome, Runner, Status, Tree
+from zavis_bt.types import (
+    BaseState,
+    Candidate,
+    Event,
+    FloatArray,
+    GridMap,
+    Landmark,
+    LaserScan,
+    MissionResult,
+    NodeState,
+    PanTiltState,
+    Path,
+    RobotSpec,
+    Viewpoint,
+)
+
+_LOG = logging.getLogger(__name__)
+_STEP = 0.02  # distance between recorded points of the trajectory [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Which mission this is, for its result."""
+
+    id: str
+    method: str
+    seed: int
+    shortest_path_length: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What a mission is composed of; the command line and the benchmark choose them."""
+
+    robot: Robot
+    clock: Clock
+    jobs: Jobs
+    detector: Detector
+    matcher: Matcher
+    prior: KnowledgePrior
+    human: Human
+    rng: np.random.Generator
+
+
+class Mission:
+    """Runs a tree on a robot: reads, maps, ticks, drives, shows, in this order, until it ends.
+
+    Offers itself to observers as `zavis_bt.types.Observed`.
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        parts: Parts,
+        search: Search,
+        task: Task,
+        *,
+        settings: MissionSettings | None = None,
+        observers: Sequence[Observer] = (),
+        sinks: Sequence[Callable[[Event], None]] = (),
+    ) -> None:
+        """Compose the mission; nothing moves yet.
+
+        Args:
+            tree: The loaded tree; its behaviours get the resources ``robot``, ``clock``, ``jobs``, ``mapper``,
+                ``navigator``, ``perceiver``, ``prior``, ``human``, ``journal`` and ``rng``.
+            parts: Robot, clock, models and person.
+            search: What to look for.
+            task: Names for the result.
+            settings: Bounds and rates.
+            observers: Viewers and recorders; what they raise is logged and dropped.
+            sinks: Get each journal event as it happens.
+
+        Raises:
+            TreeError: A behaviour wants a resource that no mission has.
+            InputError: An unknown planner.
+        """
+        self._settings = settings or MissionSettings()
+        self._parts, self._search, self._task, self._tree = parts, search, task, tree
+        self._observers = list(observers)
+        self.journal = MissionJournal(parts.clock, tuple(sinks))
+        self._robot = SafeRobot(parts.robot, self._settings.safety, self.journal)
+        self._mapper = Mapper(parts.robot.spec, self._settings.resolution)
+        self._trajectory: list[tuple[float, float]] = []
+        self._last_base: BaseState | None = None
+        self.path_length = 0.0
+        navigator = Navigator(
+            parts.robot.spec, lambda: self._mapper.grid, planner=self._settings.planner, rng=parts.rng
+        )
+        perceiver = Perceiver(
+            parts.detector,
+            parts.matcher,
+            known=search.known,
+            unknown=search.unknown,
+            match_threshold=self._settings.match_threshold,
+        )
+        tree.setup(
+            {
+                "robot": self._robot,
+                "clock": parts.clock,
+                "jobs": parts.jobs,
+                "mapper": self._mapper,
+                "navigator": navigator,
+                "perceiver": perceiver,
+                "prior": parts.prior,
+                "human": Dialogue(parts.human, self.journal),
+                "journal": self.journal,
+                "rng": parts.rng,
+            }
+        )
+        self.runner = Runner(
+            tree,
+            parts.clock,
+            rate=self._settings.rate,
+            before=[self._sense],
+            after=[self._drive, self._check_budget, self._show],
+            on_exit=[self._robot.halt],
+            on_pause=self._robot.halt,
+        )
+
+    # -- the tick ------------------------------------------------------------------------------------------------
+
+    def _sense(self) -> None:
+        self._robot.base.read()
+        state = self._robot.base.latest
+        self._mapper.update(self._robot.base.scan, state.pose)
+        if self._last_base is not None:
+            self.path_length += state.pose.distance(self._last_base.pose)
+        self._last_base = state
+        here = (state.pose.x, state.pose.y)
+        if not self._trajectory or math.dist(here, self._trajectory[-1]) >= _STEP:
+            self._trajectory.append(here)
+
+    def _drive(self) -> None:
+        self._robot.base.flush(self._parts.clock.now())
+
+    def _check_budget(self) -> None:
+        if self.path_length > self._settings.max_travel:
+            self.runner.stop(f"not found within {self._settings.max_travel:g} m of travel")
+        elif self._parts.clock.now() - self._started > self._settings.max_seconds:
+            self.runner.stop(f"not found within {self._settings.max_seconds:g} s")
+
+    def _show(self) -> None:
+        self._notify(lambda observer: observer.on_tick(self))
+
+    def _notify(self, call: Callable[[Observer], None]) -> None:
+        for observer in list(self._observers):
+            try:
+                call(observer)
+            except Exception:  # whoever watches must not stop what is watched
+                _LOG.exception("%s failed and is dropped", type(observer).__name__)
+                self._observers.remove(observer)
+
+    # -- the run -------------------------------------------------------------------------------------------------
+
+    def run(self) -> MissionResult:
+        """Run to the end.
+
+        Whatever ends the run, the robot is stopped and the observers are told the result.
+
+        Returns:
+            How it went.
+
+        Raises:
+            KeyboardInterrupt: The user pressed Ctrl-C; everything was stopped and recorded before.
+        """
+        wall_start = time.perf_counter()
+        self._started = self._parts.clock.now()
+        self._robot.base.read()
+        self._notify(lambda observer: observer.on_start(self))
+        success, reason = False, "interrupted"
+        try:
+            outcome = self.runner.run()
+            success, reason = outcome.status == Status.SUCCESS, self._reason(outcome)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            reason = f"crash: {type(error).__name__}: {error}"
+            raise
+        finally:
+            self._robot.halt()
+            result = self._result(success, reason, time.perf_counter() - wall_start)
+            self._notify(lambda observer: observer.on_end(self, result))
+        return result
+
+    def _reason(self, outcome: Outcome) -> str:
+        if outcome.status == Status.SUCCESS:
+            return "found" if self.journal.found is not None else (outcome.reason or "done")
+        return f"{outcome.node}: {outcome.reason}" if outcome.node else outcome.reason
+
+    def _result(self, success: bool, reason: str, wall_seconds: float) -> MissionResult:
+        counts, shortest = self.journal.counts, self._task.shortest_path_length
+        return MissionResult(
+            id=self._task.id,
+            method=self._task.method,
+            success=success,
+            reason=reason,
+            spl=None if shortest is None else spl(success, self.path_length, shortest),
+            path_length=self.path_length,
+            shortest_path_length=shortest,
+            waypoints=counts["visit"],
+            candidates=len(self.journal.candidates),
+            confirmations=counts["ask"],
+            sim_seconds=self._parts.clock.now() - self._started,
+            wall_seconds=wall_seconds,
+            seed=self._task.seed,
+            details={"scans": counts["scan"], "frontiers": counts["frontier"], "safety_stops": counts["safety"]},
+        )
+
+    # -- what observers see --------------------------------------------------------------------------------------
+
+    @property
+    def stamp(self) -> float:
+        """Time on the mission's clock [s]."""
+        return self._parts.clock.now()
+
+    @property
+    def robot(self) -> RobotSpec:
+        """The robot's model."""
+        return self._robot.spec
+
+    @property
+    def base(self) -> BaseState:
+        """Pose, velocity, battery."""
+        return self._robot.base.latest
+
+    @property
+    def pan_tilt(self) -> PanTiltState:
+        """Joint angles."""
+        return self._robot.pan_tilt.state()
+
+    @property
+    def scan(self) -> LaserScan | None:
+        """Latest LiDAR scan."""
+        return self._robot.base.scan
+
+    @property
+    def grid(self) -> GridMap:
+        """Occupancy map so far."""
+        return self._mapper.grid
+
+    @property
+    def landmarks(self) -> tuple[Landmark, ...]:
+        """Semantic map so far."""
+        return self._mapper.semantic.landmarks
+
+    @property
+    def nodes(self) -> tuple[NodeState, ...]:
+        """The tree, depth first."""
+        return self._tree.nodes()
+
+    @property
+    def path(self) -> Path | None:
+        """Path being followed."""
+        return self.journal.path
+
+    @property
+    def viewpoints(self) -> tuple[Viewpoint, ...]:
+        """Viewpoints still to visit, in their order."""
+        return self.journal.viewpoints
+
+    @property
+    def visited(self) -> tuple[Viewpoint, ...]:
+        """Viewpoints visited, in their order."""
+        return tuple(self.journal.visited)
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """All candidates so far."""
+        return tuple(self.journal.candidates)
+
+    @property
+    def found(self) -> Candidate | None:
+        """The confirmed candidate."""
+        return self.journal.found
+
+    @property
+    def trajectory(self) -> FloatArray:
+        """(n, 2) positions driven so far [m]."""
+        return np.array(self._trajectory, dtype=np.float64).reshape(-1, 2)
+
+
+def spl(success: bool, path_length: float, shortest: float) -> float:
+    """Return success weighted by path length, S·l / max(p, l) (Anderson et al. 2018).
+
+    Args:
+        success: S.
+        path_length: p, what was driven [m].
+        shortest: l, the shortest geodesic path to a pose at which success is possible [m].
+
+    Returns:
+        0 to 1; a success with l = 0 counts 1.
+    """
+    if not success:
+        return 0.0
+    return shortest / max(path_length, shortest) if shortest > 0 else 1.0
