@@ -10,14 +10,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from zavis_bt.types import FREE, FloatArray, GridMap, Pose2D
 
+if TYPE_CHECKING:
+    from sim.raycast import RayCaster
+
 _TOUCH = 1e-9  # [m] two edges this close touch
-_SHARED = ("occupied", "furniture_cells", "walls")  # what depends on the map and the furniture alone
+_SHARED = ("occupied", "furniture_cells", "walls", "ray_caster")  # what depends on the map and the furniture alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +96,13 @@ class World:
     def walls(self) -> NDArray[np.bool_]:
         """(rows, cols) cells that are not free and that no furniture box touches."""
         return _read_only(self.occupied & ~self.furniture_cells)
+
+    @cached_property
+    def ray_caster(self) -> RayCaster:
+        """Casts rays that every cell that is not free stops."""
+        from sim.raycast import RayCaster  # brings the compiler, which readers of worlds do not need
+
+        return RayCaster(self.occupied, self.grid.resolution, self.grid.origin)
 
     def with_objects(self, objects: Iterable[WorldObject]) -> World:
         """Return this world with other objects in it; the derived arrays are shared, not made anew."""

@@ -1,0 +1,55 @@
+"""The simulated mobile base."""
+
+from __future__ import annotations
+
+import math
+
+from sim.physics import Physics
+from zavis_bt.types import BaseLimits, BaseState, Pose2D, Twist2D
+
+
+class SimBase:
+    """A differential-drive base with watchdog, bumper, stall detection and emergency stop."""
+
+    def __init__(self, physics: Physics, limits: BaseLimits, *, watchdog: float) -> None:
+        """Connect to the base of a world; after ``watchdog`` seconds without a command it slows down to rest."""
+        self._physics, self._limits, self._watchdog = physics, limits, watchdog
+        self._battery = 1.0
+        self._estop = False
+
+    def state(self) -> BaseState:
+        """Return pose by odometry, velocity and switches as they are now."""
+        motion = self._physics.motion
+        return BaseState(
+            pose=Pose2D(*motion.odometry),
+            twist=Twist2D(motion.linear, motion.angular),
+            stamp=self._physics.now,
+            battery=self._battery,
+            bumper=motion.contact.touching,
+            stalled=motion.contact.stalled,
+            estop=self._estop,
+        )
+
+    def command(self, twist: Twist2D) -> None:
+        """Drive with this velocity, clipped to the limits; ignored while the emergency stop is pressed.
+
+        Raises:
+            ValueError: The velocity is not finite.
+        """
+        if not (math.isfinite(twist.linear) and math.isfinite(twist.angular)):
+            raise ValueError(f"{twist} is not a velocity")
+        if not self._estop:
+            self._physics.command(twist.linear, twist.angular, self._limits, self._watchdog)
+
+    def stop(self) -> None:
+        """Slow down to rest."""
+        self._physics.command(0.0, 0.0, self._limits, 0.0)
+
+    def press_estop(self, pressed: bool = True) -> None:
+        """Press or release the emergency stop, as a person standing by would."""
+        self._estop = pressed
+        self.stop()
+
+    def set_battery(self, charge: float) -> None:
+        """Set the state of charge, 0 to 1; it does not change by itself."""
+        self._battery = min(max(charge, 0.0), 1.0)
