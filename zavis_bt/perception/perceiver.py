@@ -1,0 +1,199 @@
+"""From one frame to landmarks and candidates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from zavis_bt.errors import InputError
+from zavis_bt.perception.boxes import clip, suppress, touches_border
+from zavis_bt.perception.landmarks import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS
+from zavis_bt.perception.naming import key, may_name
+from zavis_bt.perception.projection import Located, locate_landmark, locate_object
+from zavis_bt.protocols import Detector, Matcher
+from zavis_bt.types import (
+    UNKNOWN_CLASS,
+    Box,
+    Candidate,
+    Detection,
+    FloatArray,
+    LandmarkSighting,
+    Percept,
+    RgbdFrame,
+)
+
+_SAME = 0.7  # boxes that overlap more show the same thing [IoU]
+_CUT_OFF = 0.5  # what a sighting cut off by the image's edge keeps of its score: its middle and radius are biased
+
+Distribution = tuple[tuple[str, float], ...]
+
+
+class Perceiver:
+    """The paper's detection module: open-set detection, text-image matching, projection to the map.
+
+    - A box of a known landmark class is a sighting with the detector's class probabilities, restricted to the known
+      landmarks.
+    - An ``unknown`` box is matched with the names of the unknown landmarks and with the target, in one call of the
+      matcher a frame. If its score for the target is at least `match_threshold` (m_t), it is a candidate. If not, and
+      its best landmark's score is at least `landmark_threshold` and it is as large as furniture, it is a sighting
+      with softmax(m / T_o) over the names.
+    - Both are projected with the depth and camera pose of this very frame. What has no depth is left out: it could
+      be neither drawn on the map nor driven to, and is seen again from nearer.
+
+    Deviations from the paper, which matches ``unknown`` boxes only and makes a landmark of each: boxes of a known
+    class that the target's text names ("the sofa", "spray bottle" for ``bottle``) are matched with the target, too,
+    as the user may ask for what the detector happens to know; what matches the target, matches no landmark's name or
+    is small is no landmark, so that mugs do not become desks; of boxes that show the same thing one is kept, of a
+    known and an ``unknown`` one the known.
+    """
+
+    def __init__(
+        self,
+        detector: Detector,
+        matcher: Matcher,
+        *,
+        known: Sequence[str] = DEFAULT_KNOWN_LANDMARKS,
+        unknown: Sequence[str] = DEFAULT_UNKNOWN_LANDMARKS,
+        match_threshold: float = 29.0,
+        landmark_threshold: float = 24.0,
+        temperature: float = 1.0,
+        min_landmark_size: float = 0.25,
+    ) -> None:
+        """Connect a detector and a matcher.
+
+        Args:
+            detector: Open-set detector.
+            matcher: Text-image matcher.
+            known: Names O_k of the landmarks that are classes of the detector; case and spaces do not matter.
+            unknown: Names O_u of the landmarks told by matching.
+            match_threshold: m_t, on the 100 × cosine scale.
+            landmark_threshold: What the best landmark name of an ``unknown`` box must score, same scale.
+            temperature: T_o of the softmax over landmark names, above 0.
+            min_landmark_size: Larger side of the smallest ``unknown`` landmark [m].
+
+        Raises:
+            InputError: A setting is out of its range, or a name is empty.
+        """
+        if not (math.isfinite(temperature) and temperature > 0):
+            raise InputError(f"perceiver: temperature is {temperature} (above 0)")
+        if any(not key(name) for name in (*known, *unknown)):
+            raise InputError("perceiver: a landmark's name is empty (write it in words, such as 'coffee table')")
+        self._detector = detector
+        self._matcher = matcher
+        self._known = {key(name): name for name in known}
+        self._unknown = tuple(dict.fromkeys(unknown))
+        self._match_threshold = match_threshold
+        self._landmark_threshold = landmark_threshold
+        self._temperature = temperature
+        self._min_landmark_size = min_landmark_size
+
+    def perceive(self, frame: RgbdFrame, target: str) -> Percept:
+        """Return what a frame shows.
+
+        Args:
+            frame: Colour and depth image.
+            target: What is looked for, in free words; if blank, there are no candidates.
+
+        Returns:
+            Sightings and candidates, each best first, of distinct things.
+
+        Raises:
+            InputError: The matcher's scores have the wrong shape.
+        """
+        boxes = [
+            (detection, box) for detection in self._detect(frame) if (box := clip(detection.box, frame.intrinsics))
+        ]
+        known = [(detection, box) for detection, box in boxes if key(detection.label) in self._known]
+        unknown = [(detection, box) for detection, box in boxes if detection.label == UNKNOWN_CLASS]
+        named = [(d, box) for d, box in boxes if d.label != UNKNOWN_CLASS and may_name(target, d.label)]
+        matched = [box for _, box in (*unknown, *named)]
+        scores = self._match(frame, matched, target)
+        sightings = self._known_sightings(frame, known) + self._unknown_sightings(frame, unknown, scores)
+        distinct = [sighting for sighting, _ in suppress(sightings, lambda pair: pair[1], _SAME)]
+        distinct.sort(key=lambda sighting: -sighting.score)
+        return Percept(tuple(distinct), self._candidates(frame, target, matched, scores[:, -1]))
+
+    def _detect(self, frame: RgbdFrame) -> list[Detection]:
+        usable = [detection for detection in self._detector.detect(frame) if math.isfinite(detection.score)]
+        return sorted(usable, key=lambda detection: (-detection.score, detection.box))
+
+    def _match(self, frame: RgbdFrame, boxes: Sequence[Box], target: str) -> FloatArray:
+        """Return m of the boxes, (n, L' + 1): the unknown landmarks' names, then the target; -inf for no score."""
+        texts = [*self._unknown, *([target] if target.strip() else [])]
+        scores = np.full((len(boxes), len(self._unknown) + 1), -np.inf)
+        if not boxes or not texts:
+            return scores
+        matched = np.asarray(self._matcher.match(frame, boxes, texts), dtype=np.float64)
+        if matched.shape != (len(boxes), len(texts)):
+            raise InputError(f"matcher: scores of shape {matched.shape} (should be {(len(boxes), len(texts))})")
+        scores[:, : len(texts)] = np.where(np.isfinite(matched), matched, -np.inf)
+        return scores
+
+    def _known_sightings(
+        self, frame: RgbdFrame, known: Sequence[tuple[Detection, Box]]
+    ) -> list[tuple[LandmarkSighting, Box]]:
+        sightings = []
+        for detection, box in known:
+            located = locate_landmark(frame, box)
+            if located is not None:
+                sightings.append(_sighting(frame, detection, box, self._known_distribution(detection), located))
+        return sightings
+
+    def _known_distribution(self, detection: Detection) -> Distribution:
+        """Return the detector's class probabilities, restricted to the known landmarks."""
+        shares = [(self._known[key(name)], p) for name, p in detection.probabilities if key(name) in self._known]
+        total = sum(p for _, p in shares)
+        if not (math.isfinite(total) and total > 0):
+            return ((self._known[key(detection.label)], 1.0),)
+        return tuple((name, p / total) for name, p in shares)
+
+    def _unknown_sightings(
+        self, frame: RgbdFrame, unknown: Sequence[tuple[Detection, Box]], scores: FloatArray
+    ) -> list[tuple[LandmarkSighting, Box]]:
+        sightings = []
+        for (detection, box), row in zip(unknown, scores, strict=False):  # rows of named boxes follow
+            names, target = row[:-1], row[-1]
+            best = names.max(initial=-np.inf)
+            if target >= self._match_threshold or best < self._landmark_threshold or not math.isfinite(best):
+                continue
+            located = locate_landmark(frame, box)
+            if located is None or not self._large_enough(frame, box, located):
+                continue
+            distribution = tuple(zip(self._unknown, softmax(names / self._temperature).tolist(), strict=True))
+            sightings.append(_sighting(frame, detection, box, distribution, located))
+        return sightings
+
+    def _large_enough(self, frame: RgbdFrame, box: Box, located: Located) -> bool:
+        if touches_border(box, frame.intrinsics):
+            return True  # what is cut off may be as large as it likes
+        width = (box.x1 - box.x0) / frame.intrinsics.fx * located.depth
+        height = (box.y1 - box.y0) / frame.intrinsics.fy * located.depth
+        return max(width, height) >= self._min_landmark_size
+
+    def _candidates(
+        self, frame: RgbdFrame, target: str, boxes: Sequence[Box], scores: FloatArray
+    ) -> tuple[Candidate, ...]:
+        candidates = []
+        for index in np.argsort(-scores, kind="stable"):
+            if scores[index] < self._match_threshold:
+                break
+            located = locate_object(frame, boxes[index])
+            if located is not None:
+                candidates.append(Candidate(target, float(scores[index]), boxes[index], located.position, frame))
+        return tuple(suppress(candidates, lambda candidate: candidate.box, _SAME))
+
+
+def softmax(logits: FloatArray) -> FloatArray:
+    """Return exp(x_i) / Σ_j exp(x_j) of (n,) logits, n ≥ 1, at least one finite; -inf counts as probability 0."""
+    shifted = np.exp(logits - logits.max())
+    probabilities: FloatArray = shifted / shifted.sum()
+    return probabilities
+
+
+def _sighting(
+    frame: RgbdFrame, detection: Detection, box: Box, distribution: Distribution, located: Located
+) -> tuple[LandmarkSighting, Box]:
+    score = detection.score * (_CUT_OFF if touches_border(box, frame.intrinsics) else 1.0)
+    return LandmarkSighting(distribution, located.position, located.radius, score, frame.stamp), box
