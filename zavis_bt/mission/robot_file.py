@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
@@ -56,6 +56,9 @@ class _Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+_EntryT = TypeVar("_EntryT", bound=_Entry)
+
+
 class _Footprint(_Entry):
     radius: Positive | None = None
     length: Positive | None = None
@@ -76,7 +79,8 @@ class _Footprint(_Entry):
     def value(self) -> Footprint:
         if self.radius is not None:
             return Footprint(2 * self.radius, 2 * self.radius, disc=True)
-        assert self.length is not None and self.width is not None
+        assert self.length is not None
+        assert self.width is not None
         return Footprint(self.length, self.width, self.centre_x)
 
 
@@ -200,7 +204,7 @@ def load_robot(path: Path | str) -> RobotFile:
     return RobotFile(model.value(), devices, document.path)
 
 
-def _check_order(entry: Any, *pairs: tuple[str, str]) -> Any:
+def _check_order(entry: _EntryT, *pairs: tuple[str, str]) -> _EntryT:
     for low, high in pairs:
         if getattr(entry, low) >= getattr(entry, high):
             raise ValueError(f"{low} must be below {high}")
