@@ -26,7 +26,11 @@ class OccupancyGrid:
     """
 
     def __init__(
-        self, resolution: float = 0.05, max_range: float | None = None, model: SensorModel | None = None
+        self,
+        resolution: float = 0.05,
+        max_range: float | None = None,
+        model: SensorModel | None = None,
+        no_return_is_free: bool = True,
     ) -> None:
         """Start with an empty map.
 
@@ -34,6 +38,8 @@ class OccupancyGrid:
             resolution: Side of a cell [m].
             max_range: Use scans only up to here [m]; None: up to the scan's own ``range_max``.
             model: Weights of hits and misses.
+            no_return_is_free: Whether a beam without return leaves its way free up to the range in use; False for
+                scanners that lose beams on glass or black surfaces, where it says nothing.
 
         Raises:
             InputError: The resolution is not positive.
@@ -43,6 +49,7 @@ class OccupancyGrid:
         self._resolution = resolution
         self._max_range = math.inf if max_range is None else max_range
         self._model = model or SensorModel()
+        self._no_return_is_free = no_return_is_free
         self._anchor = (0.0, 0.0)
         self._first = (0, 0)  # row and column of the array's cell [0, 0], counted from the anchor
         self._log_odds: LogOddsArray = np.zeros((0, 0), dtype=np.float32)
@@ -52,19 +59,21 @@ class OccupancyGrid:
     def integrate(self, scan: LaserScan, sensor: Pose2D) -> None:
         """Fuse a scan.
 
-        A beam without return leaves its way free up to the range in use; a broken beam (NaN or below ``range_min``)
-        says nothing.
+        A broken beam (NaN or below ``range_min``) says nothing.
 
         Args:
             scan: Ranges in the sensor's frame.
             sensor: The sensor in the map at the time of the scan.
+
+        Raises:
+            InputError: The scan has no beams, or no range ends its beams.
         """
         limit = min(scan.range_max, self._max_range)
         ranges = np.ascontiguousarray(scan.ranges, dtype=np.float64)
         if not (len(ranges) and math.isfinite(limit)):
             raise InputError(f"scan: {len(ranges)} beams up to {limit} m (at least one, and a finite range_max)")
         step = float(scan.angle_increment) or 1e-9
-        beams = trace(ranges, sensor.yaw + scan.angle_min, step, scan.range_min, limit)
+        beams = trace(ranges, sensor.yaw + scan.angle_min, step, scan.range_min, limit, self._no_return_is_free)
         x, y = self._to_cells(sensor.x, sensor.y)
         self._include(*_bounds(x, y, beams, self._resolution))
         local_x, local_y = x - self._first[1], y - self._first[0]

@@ -16,7 +16,9 @@ LogOddsArray = NDArray[np.float32]
 Cells = tuple[NDArray[np.int64], NDArray[np.float32]]
 """Flat indices of cells, and their values before the scan."""
 
-_NUDGE = 0.05  # a surface lies on the far side of its hit: its cell is looked up this far behind the hit [cells]
+# A surface lies on the far side of its hit, so its cell is looked up behind the hit, past the noise of the reading;
+# at the rim of a thing, where it may be thin, only just behind [cells].
+_BEHIND_SURFACE, _BEHIND_RIM = 0.4, 0.05
 _LONGEST_STRETCH = 64  # of surface between two hits [cells]
 
 
@@ -63,12 +65,13 @@ def update(
         cell: Side of a cell [m].
         model: Weights of hits and misses.
     """
-    cos, sin, reach, _kinds = beams
+    cos, sin, reach, kinds = beams
     rows, cols = log_odds.shape
     dense = cell / abs(step)  # up to this distance neighbouring beams are at most a cell apart
     outline = free_outline(reach, step, cell)
-    hits, before_hits = _hit_cells(log_odds, x, y, beams, cell)
-    surface, before_surface = _surface_cells(log_odds, x, y, beams, outline, cell)
+    points = _surface_points(x, y, beams, outline, cell)
+    hits, before_hits = _hit_cells(log_odds, points, kinds)
+    surface, before_surface = _surface_cells(log_odds, points, beams, outline)
 
     xs, ys = corners(outline, dense, cos, sin, x, y, cell)
     offsets, columns = polygon_spans(xs, ys, rows, cols)
@@ -88,26 +91,36 @@ def update(
 
 
 @njit(cache=True)
-def _hit_cells(log_odds: LogOddsArray, x: float, y: float, beams: Beams, cell: float) -> Cells:
-    """Find the cells the beams ended in, repeated if hit twice."""
-    cos, sin, reach, kinds = beams
-    flat, cols = log_odds.reshape(-1), log_odds.shape[1]
-    cells = np.empty(len(reach), dtype=np.int64)
-    k = 0
+def _surface_points(x: float, y: float, beams: Beams, outline: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
+    """Return (n, 2) x and y of points just behind where the beams ended [cells]."""
+    cos, sin, reach, _kinds = beams
+    points = np.empty((len(reach), 2))
     for i in range(len(reach)):
+        goes_on = reach[i] > 0 and outline[i, 0] == reach[i] and outline[i - 1, 1] == reach[i]
+        distance = reach[i] / cell + (_BEHIND_SURFACE if goes_on else _BEHIND_RIM)
+        points[i, 0], points[i, 1] = x + distance * cos[i], y + distance * sin[i]
+    return points
+
+
+@njit(cache=True)
+def _hit_cells(log_odds: LogOddsArray, points: NDArray[np.float64], kinds: NDArray[np.int8]) -> Cells:
+    """Find the cells the beams ended in, repeated if hit twice."""
+    flat, cols = log_odds.reshape(-1), log_odds.shape[1]
+    cells = np.empty(len(points), dtype=np.int64)
+    k = 0
+    for i in range(len(points)):
         if kinds[i] == HIT:
-            distance = reach[i] / cell + _NUDGE
-            cells[k] = int(y + distance * sin[i]) * cols + int(x + distance * cos[i])
+            cells[k] = int(points[i, 1]) * cols + int(points[i, 0])
             k += 1
     return cells[:k], flat[cells[:k]]
 
 
 @njit(cache=True)
 def _surface_cells(
-    log_odds: LogOddsArray, x: float, y: float, beams: Beams, outline: NDArray[np.float64], cell: float
+    log_odds: LogOddsArray, points: NDArray[np.float64], beams: Beams, outline: NDArray[np.float64]
 ) -> Cells:
     """Find the cells between neighbouring hits on one surface."""
-    cos, sin, reach, kinds = beams
+    _cos, _sin, reach, kinds = beams
     flat, cols, n = log_odds.reshape(-1), log_odds.shape[1], len(reach)
     cells = np.empty(n * _LONGEST_STRETCH, dtype=np.int64)
     k = 0
@@ -115,11 +128,11 @@ def _surface_cells(
         j = (i + 1) % n
         if kinds[i] != HIT or kinds[j] != HIT or outline[i, 0] != reach[i] or outline[i, 1] != reach[j]:
             continue  # there may be a shadow between them
-        a, b = reach[i] / cell + _NUDGE, reach[j] / cell + _NUDGE
-        x0, y0, x1, y1 = x + a * cos[i], y + a * sin[i], x + b * cos[j], y + b * sin[j]
-        steps = min(int(max(abs(x1 - x0), abs(y1 - y0))) + 1, _LONGEST_STRETCH)
+        x, y = points[i, 0], points[i, 1]
+        dx, dy = points[j, 0] - x, points[j, 1] - y
+        steps = min(int(max(abs(dx), abs(dy))) + 1, _LONGEST_STRETCH)
         for s in range(1, steps):
-            cells[k] = int(y0 + (y1 - y0) * s / steps) * cols + int(x0 + (x1 - x0) * s / steps)
+            cells[k] = int(y + dy * s / steps) * cols + int(x + dx * s / steps)
             k += 1
     return cells[:k], flat[cells[:k]]
 

@@ -17,7 +17,9 @@ _STEEPEST = 5.7  # 1 / tan 10°: a surface seen at a flatter angle than 10° is 
 
 
 @njit(cache=True)
-def trace(ranges: NDArray[np.float64], angle: float, step: float, range_min: float, limit: float) -> Beams:
+def trace(
+    ranges: NDArray[np.float64], angle: float, step: float, range_min: float, limit: float, open_free: bool
+) -> Beams:
     """Sort out the beams of a scan.
 
     Args:
@@ -26,6 +28,7 @@ def trace(ranges: NDArray[np.float64], angle: float, step: float, range_min: flo
         step: Angle between neighbouring beams [rad].
         range_min: Readings below are broken [m].
         limit: Readings above say only that there is nothing up to here [m].
+        open_free: Whether a beam without return says so too; else it counts as broken.
 
     Returns:
         The beams.
@@ -35,7 +38,7 @@ def trace(ranges: NDArray[np.float64], angle: float, step: float, range_min: flo
     kinds = np.zeros(n, dtype=np.int8)
     for i in range(n):
         cos[i], sin[i] = math.cos(angle + i * step), math.sin(angle + i * step)
-        if ranges[i] >= range_min:  # false for NaN
+        if ranges[i] >= range_min and (open_free or ranges[i] < np.inf):  # false for NaN
             kinds[i] = HIT if ranges[i] <= limit else OPEN
             reach[i] = min(ranges[i], limit)
     return cos, sin, reach, kinds
