@@ -1,0 +1,128 @@
+"""Frames of the simulated camera: images made when asked for, and what is really in them."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.render import measure, render
+from sim.scene import Scene
+from sim.visibility import Bounds, View, bounds_of, sightings
+from sim.world import WorldObject
+from zavis_bt.errors import InputError
+from zavis_bt.types import Box, CameraIntrinsics, FloatArray, RgbdFrame
+
+
+class InstanceView(NamedTuple):
+    """A piece of furniture or an object as one frame shows it: ground truth, for simulated perception only."""
+
+    id: str
+    category: str
+    colour: str | None
+    is_furniture: bool
+    box: Box
+    """Around the visible part, clipped to the image [px]."""
+    full_box: Box
+    """Around the whole of it before the camera, not clipped [px]."""
+    visible_fraction: float
+    """Visible share of the silhouette's area, 0 to 1; what the image's border cuts off is not visible."""
+    visible_area: float
+    """Visible area [px²]."""
+    distance: float
+    """From the optical centre to its middle [m]."""
+
+
+class SimFrame(RgbdFrame):
+    """A frame that casts single rays for single depths, and knows what it shows."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        intrinsics: CameraIntrinsics,
+        transform_camera_to_map: FloatArray,
+        stamp: float,
+        depth_range: tuple[float, float],
+    ) -> None:
+        """Describe a frame of a scene.
+
+        Args:
+            scene: What there is to see.
+            intrinsics: Camera model.
+            transform_camera_to_map: (4, 4) camera pose.
+            stamp: Time of capture [s].
+            depth_range: Least and greatest depth the camera measures [m].
+        """
+        super().__init__(intrinsics, transform_camera_to_map, stamp, self._render_all)
+        self._scene = scene
+        self._depth_range = depth_range
+
+    @cached_property
+    def _view(self) -> View:
+        return View.of(self.transform_camera_to_map, self.intrinsics)
+
+    @cached_property
+    def _bounds(self) -> Bounds:
+        return bounds_of(self._scene.solids, self._view)
+
+    @cached_property
+    def instances(self) -> tuple[InstanceView, ...]:
+        """What is in sight, at least partly, nearest first; what is smaller than a few pixels is left out."""
+        scene, bounds = self._scene, self._bounds
+        found = sightings(scene.solids, self._view, bounds)
+        offsets = scene.solids.boxes[found.indices, :3] - self._view.position
+        distances = np.sqrt((offsets**2).sum(axis=1)).tolist()
+        rows = zip(
+            found.indices.tolist(),
+            found.boxes.tolist(),
+            bounds.rectangles[found.indices].tolist(),
+            found.fractions.tolist(),
+            found.areas.tolist(),
+            distances,
+            strict=True,
+        )
+        return tuple(self._describe(*row) for row in rows)
+
+    def depth_at(self, pixels: NDArray[np.intp]) -> NDArray[np.float32]:
+        """Return the depth at (n, 2) pixels ``[column, row]``, casting only these rays."""
+        return measure(self._scene, self._view, self._bounds, pixels, self._depth_range)
+
+    def crop(self, box: Box) -> NDArray[np.uint8]:
+        """Return the patch inside the box, rendering no more than it."""
+        if "_pixels" in self.__dict__:
+            return super().crop(box)
+        width, height = self.intrinsics.width, self.intrinsics.height
+        x0, y0 = int(np.clip(box.x0, 0, width - 1)), int(np.clip(box.y0, 0, height - 1))
+        x1, y1 = int(np.clip(math.ceil(box.x1), x0 + 1, width)), int(np.clip(math.ceil(box.y1), y0 + 1, height))
+        return self._render((x0, y0, x1, y1))[0]
+
+    def _render_all(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        return self._render((0, 0, self.intrinsics.width, self.intrinsics.height))
+
+    def _render(self, window: tuple[int, int, int, int]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        return render(self._scene, self._view, self._bounds, window, self._depth_range)
+
+    def _describe(
+        self, index: int, box: list[float], full: list[float], fraction: float, area: float, distance: float
+    ) -> InstanceView:
+        thing = self._scene.things[index]
+        colour = thing.colour if isinstance(thing, WorldObject) else None
+        is_furniture = index < len(self._scene.furniture)
+        return InstanceView(
+            thing.id, thing.category, colour, is_furniture, Box(*box), Box(*full), fraction, area, distance
+        )
+
+
+def instances_of(frame: RgbdFrame) -> tuple[InstanceView, ...]:
+    """Return what a frame really shows.
+
+    Raises:
+        InputError: The frame does not come from the simulated camera.
+    """
+    if not isinstance(frame, SimFrame):
+        kind = type(frame).__name__
+        raise InputError(f"simulated perception: got a {kind} (it can only judge frames of the simulated camera)")
+    return frame.instances
