@@ -31,8 +31,7 @@ class AssociationSettings:
 
 def closeness(a: Evidence, b: Evidence, settings: AssociationSettings) -> float:
     """Return the horizontal distance of two middles as a share of the pair's reach."""
-    distance = math.hypot(a.position[0] - b.position[0], a.position[1] - b.position[1])
-    return distance / (settings.slack + max(a.radius, b.radius))
+    return math.dist(a.position[:2], b.position[:2]) / (settings.slack + max(a.radius, b.radius))
 
 
 def cost(a: Evidence, b: Evidence, settings: AssociationSettings) -> float:
@@ -44,10 +43,11 @@ def cost(a: Evidence, b: Evidence, settings: AssociationSettings) -> float:
 
 
 def is_same_place(a: Evidence, b: Evidence, settings: AssociationSettings) -> bool:
-    """Tell whether two things lie so much in the same place that they must be one."""
+    """Tell whether two things lie so much in the same place, height included, that they must be one."""
     small, large = sorted((a.radius, b.radius))
+    reach = settings.slack + large
     similar = large <= settings.size_ratio * small + 1e-9
-    return similar and closeness(a, b, settings) <= settings.same_place
+    return similar and math.dist(a.position, b.position) <= settings.same_place * reach
 
 
 def is_duplicate(a: Evidence, b: Evidence, settings: AssociationSettings) -> bool:

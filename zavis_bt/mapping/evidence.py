@@ -91,7 +91,7 @@ class Evidence:
         x, y, _ = self.position
         spread = math.sqrt(max(self.square_sum / self.weight - x * x - y * y, 0.0))
         grown = max(self.largest, 0.5 * self.largest + spread)
-        return max(min(grown, 2 * self.largest, _MAX_RADIUS), min(self.largest, _MAX_RADIUS))
+        return min(grown, 2 * self.largest, _MAX_RADIUS)
 
     def similarity(self, other: Evidence) -> float:
         """Return the cosine of the two label distributions, 0 to 1."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations, groupby
+from pathlib import Path
 
+from zavis_bt.errors import InputError
 from zavis_bt.mapping.association import AssociationSettings, assign, is_duplicate, is_same_place
 from zavis_bt.mapping.evidence import Evidence
+from zavis_bt.mapping.semantic_file import SemanticState, decode, encode
 from zavis_bt.types import Landmark, LandmarkSighting
 
 
@@ -62,6 +65,57 @@ class SemanticMap:
         while landmark in self._merged:
             landmark = self._merged[landmark]
         return landmark
+
+    def to_json(self) -> str:
+        """Return the map as JSON text, format ``zavis-semantic-map/1``; `from_json` gives an equal map that goes on."""
+        return encode(SemanticState(self._evidence, self._merged, self._visited, self._next_id))
+
+    @classmethod
+    def from_json(
+        cls, text: str, settings: AssociationSettings | None = None, where: str = "semantic map"
+    ) -> SemanticMap:
+        """Return the map that `to_json` wrote.
+
+        Args:
+            text: JSON.
+            settings: When two things seen are one.
+            where: Where the text comes from, for messages.
+
+        Raises:
+            InputError: The text is not a semantic map.
+        """
+        semantic = cls(settings)
+        state = decode(text, where)
+        semantic._evidence, semantic._merged = state.evidence, state.merged
+        semantic._visited, semantic._next_id = state.visited, state.next_id
+        semantic._publish()
+        return semantic
+
+    def save(self, path: Path | str) -> None:
+        """Write ``semantic_map.json``.
+
+        Raises:
+            InputError: The file cannot be written.
+        """
+        try:
+            Path(path).write_text(self.to_json(), encoding="utf-8")
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+
+    @classmethod
+    def load(cls, path: Path | str, settings: AssociationSettings | None = None) -> SemanticMap:
+        """Read ``semantic_map.json``.
+
+        Raises:
+            InputError: The file is missing or is not a semantic map.
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except FileNotFoundError as error:
+            raise InputError(f"{path}: no such file") from error
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{path}: cannot be read: {error}") from error
+        return cls.from_json(text, settings, str(path))
 
     def _fuse(self, frame: list[Evidence]) -> None:
         ids = list(self._evidence)
