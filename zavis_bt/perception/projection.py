@@ -14,10 +14,11 @@ _GRID = 7  # samples along each side of a box
 _LANDMARK_SPAN = 0.9  # share of a landmark's box that is sampled: its very edge is background
 _OBJECT_SPAN = 0.6  # the same for an object, of which the middle is the surest
 _FLOOR = 0.05  # below this height a point belongs to the floor, not to furniture [m]
-_GAP = 0.1  # depths that lie further apart belong to different things [m] …
-_RELATIVE_GAP = 0.03  # … or by this share of the distance, as depth cameras grow noisy with it
-_MIN_DEPTH_OF_LANDMARK = 0.3  # half the depth granted to the narrowest landmark [m]
-_MIN_SHARE = 0.15  # smaller clusters of depth in the middle of an object's box are noise or a thin occluder
+_LANDMARK_GAP = 0.3  # depths that lie further apart belong to different things [m]
+_OBJECT_GAP = 0.1
+_RELATIVE_GAP = 0.03  # the least gap as a share of the distance, as depth cameras grow noisy with it
+_LANDMARK_SHARE = 0.2  # share of the samples that makes a thing; less is noise or a thin occluder
+_OBJECT_SHARE = 0.15
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +36,9 @@ class Located:
 def locate_landmark(frame: RgbdFrame, box: Box) -> Located | None:
     """Locate a piece of furniture that fills most of its box.
 
-    The median depth in the box's middle decides. Points of the floor do not count, nor do those further in front of
-    or behind it than half the box's width, as furniture seldom is deeper than wide.
+    The nearest thing that fills a good part of the box is the landmark, as legs of tables leave more of the box to
+    what is behind. Points of the floor do not count, nor do those further in front or behind than half the box's
+    width, as furniture seldom is deeper than wide.
 
     Args:
         frame: The frame the box is from; its own depth and camera pose are used.
@@ -52,9 +54,8 @@ def locate_landmark(frame: RgbdFrame, box: Box) -> Located | None:
     seen = upright if upright.any() else seen
     if not seen.any():
         return None
-    central = seen & _inside(pixels, box, _OBJECT_SPAN)
-    reference = float(np.percentile(depth[central if central.any() else seen], 50, method="lower"))
-    tolerance = max((box.x1 - box.x0) * reference / frame.intrinsics.fx / 2, _MIN_DEPTH_OF_LANDMARK)
+    reference = float(np.median(depth[_nearest_thing(depth, seen, _LANDMARK_GAP, _LANDMARK_SHARE)]))
+    tolerance = max((box.x1 - box.x0) * reference / frame.intrinsics.fx / 2, _LANDMARK_GAP)
     surface = points[seen & (np.abs(depth - reference) <= tolerance)]
     low, high = np.percentile(surface, (5, 95), axis=0)
     return _located((low + high) / 2, surface, _LANDMARK_SPAN, reference)
@@ -63,8 +64,7 @@ def locate_landmark(frame: RgbdFrame, box: Box) -> Located | None:
 def locate_object(frame: RgbdFrame, box: Box) -> Located | None:
     """Locate an object whose box also shows what is behind it.
 
-    Depths in the box's middle are split where they leave a gap; the nearest cluster that is not just noise is the
-    object.
+    The nearest thing in the box's middle that is more than noise is the object.
 
     Args:
         frame: The frame the box is from; its own depth and camera pose are used.
@@ -75,16 +75,21 @@ def locate_object(frame: RgbdFrame, box: Box) -> Located | None:
     """
     pixels = _sample(box, frame.intrinsics, _OBJECT_SPAN)
     depth, points = _points(frame, pixels)
-    seen = np.flatnonzero(depth > 0)
-    if not len(seen):
+    seen = depth > 0
+    if not seen.any():
         return None
-    order = seen[np.argsort(depth[seen], kind="stable")]
-    gap = np.maximum(_GAP, _RELATIVE_GAP * depth[order[:-1]])
-    clusters = np.split(order, np.flatnonzero(np.diff(depth[order]) > gap) + 1)
-    needed = min(_MIN_SHARE * len(seen), max(map(len, clusters)))
-    nearest = next(cluster for cluster in clusters if len(cluster) >= needed)
-    surface = points[nearest]
-    return _located(np.median(surface, axis=0), surface, _OBJECT_SPAN, float(np.median(depth[nearest])))
+    thing = _nearest_thing(depth, seen, _OBJECT_GAP, _OBJECT_SHARE)
+    return _located(np.median(points[thing], axis=0), points[thing], _OBJECT_SPAN, float(np.median(depth[thing])))
+
+
+def _nearest_thing(depth: FloatArray, seen: NDArray[np.bool_], gap: float, share: float) -> NDArray[np.intp]:
+    """Return the indices of the nearest run of depths without a gap that holds a share of all that are seen."""
+    order = np.flatnonzero(seen)
+    order = order[np.argsort(depth[order], kind="stable")]
+    least = np.maximum(gap, _RELATIVE_GAP * depth[order[:-1]])
+    runs = np.split(order, np.flatnonzero(np.diff(depth[order]) > least) + 1)
+    needed = min(share * len(order), max(map(len, runs)))
+    return next(run for run in runs if len(run) >= needed)
 
 
 def _located(middle: FloatArray, surface: FloatArray, span: float, depth: float) -> Located:
@@ -108,14 +113,6 @@ def _points(frame: RgbdFrame, pixels: NDArray[np.intp]) -> tuple[FloatArray, Flo
     depth = np.where(np.isfinite(depth) & (depth > 0), depth, 0.0)
     optical = back_project(pixels.astype(np.float64) + 0.5, depth, frame.intrinsics)
     return depth, transform_points(frame.transform_camera_to_map, optical)
-
-
-def _inside(pixels: NDArray[np.intp], box: Box, span: float) -> NDArray[np.bool_]:
-    """Return which pixels (n, 2) lie in the middle part of the box."""
-    middle = np.array([box.x0 + box.x1, box.y0 + box.y1]) / 2
-    size = np.array([box.x1 - box.x0, box.y1 - box.y0])
-    offset = np.abs(pixels.astype(np.float64) + 0.5 - middle)
-    return np.all(offset <= span / 2 * size + 1, axis=1)
 
 
 def _extent(points: FloatArray) -> float:
