@@ -170,10 +170,8 @@ def _contradictions(episode: Episode) -> list[str]:
     for instance in episode.instances:
         if instance not in categories:
             faults.append(f"target.instances: no object has the id '{instance}'{did_you_mean(instance, categories)}")
-        elif categories[instance] != episode.target:
-            faults.append(
-                f"target.instances: '{instance}' is a {categories[instance]} (the target is {episode.target})"
-            )
+        elif (category := categories[instance]) != episode.target:
+            faults.append(f"target.instances: '{instance}' is of category '{category}' (not '{episode.target}')")
     if not episode.world.is_file():
         faults.append(f"world: no such file: {episode.world} (a path relative to the episodes file)")
     return faults

@@ -13,6 +13,7 @@ import threading
 import traceback
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Generic, TypeVar
@@ -83,6 +84,7 @@ def _hired(work: Callable[[T], R]) -> _Worker[T, R]:
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=_serve, args=(theirs, work), daemon=True)
+    resource_tracker.ensure_running()  # its start, which the first process brings about, would let the signal through
     with _environment(dict.fromkeys(_ONE_THREAD, "1")), _blocked(signal.SIGINT):
         process.start()
     theirs.close()

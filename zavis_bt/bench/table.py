@@ -74,7 +74,7 @@ def _summary_rows(results: Sequence[EpisodeResult]) -> tuple[list[str], list[lis
 def _difference_rows(results: Sequence[EpisodeResult], reference: str | None) -> tuple[str, list[str], list[list[str]]]:
     reference = reference or results[0].method
     differences: list[Difference] = compare(results, reference)
-    header = ["method", "group", "n", *(f"Δ {_heading(metric)}" for metric in METRICS)]
+    header = ["method", "group", "n", *(_heading(metric) for metric in METRICS)]
     rows = [[row.method, row.group, str(row.episodes), *_cells(row.estimates, signed=True)] for row in differences]
     return f"Difference to {reference}", header, rows
 
