@@ -90,7 +90,7 @@ def _hulls(world: World, boxes: FloatArray) -> IntArray:
     local = np.abs(np.stack((along, across, offsets[..., 2]), axis=-1))
     count = len(world.furniture)
     tolerance = np.where(np.arange(len(centres)) < count, _HULL_TOLERANCE, 0.0)
-    holds: NDArray[np.bool_] = (local <= halves + tolerance[:, None]).all(axis=-1)
+    holds = np.all(local <= halves + tolerance[:, None], axis=-1)
     holds[:count] = False
     np.fill_diagonal(holds, False)
     places = {piece.id: place for place, piece in enumerate(world.furniture)}

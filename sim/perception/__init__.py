@@ -1,0 +1,7 @@
+"""Detector and matcher of the simulation: they know what is in sight and err as published ones do."""
+
+from sim.perception.curves import DetectorSettings, MatcherSettings
+from sim.perception.detector import SimDetector
+from sim.perception.matcher import SimMatcher
+
+__all__ = ["DetectorSettings", "MatcherSettings", "SimDetector", "SimMatcher"]
