@@ -47,7 +47,7 @@ def read_carmen(path: Path | str) -> Iterator[CarmenScan]:
     try:
         with _open(file) as lines:
             for number, line in enumerate(lines, start=1):
-                if line.startswith("FLASER "):
+                if line.startswith("FLASER"):
                     yield _parse(line.split(), f"{file}:{number}")
     except FileNotFoundError as error:
         raise InputError(f"{file}: no such file") from error

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from zavis_bt.types import LandmarkSighting
+from zavis_bt.types import Landmark, LandmarkSighting
 
 FLOOR = 1e-3
 """Least probability of a label in one sighting, so that no view can rule a label out for good."""
 
 _LEAST_WEIGHT = 1e-3  # of a sighting, so that a score of 0 counts too
+_LEAST_FUSED = 1e-300  # probability after many views, to have a logarithm
 _MAX_RADIUS = 1.5  # of a landmark, however far its sightings are spread [m]
 
 
@@ -44,6 +45,20 @@ class Evidence:
             (weight * x, weight * y, weight * z),
             weight * (x * x + y * y),
             sighting.radius,
+        )
+
+    @classmethod
+    def remembered(cls, landmark: Landmark) -> Evidence:
+        """Return evidence that amounts to a landmark, with all its views of full weight."""
+        weight, (x, y, z) = float(landmark.views), landmark.position
+        power = math.sqrt(landmark.views) / weight
+        return cls(
+            weight,
+            landmark.views,
+            {label: math.log(max(p, _LEAST_FUSED)) / power for label, p in landmark.probabilities},
+            (weight * x, weight * y, weight * z),
+            weight * (x * x + y * y),
+            landmark.radius,
         )
 
     def __add__(self, other: Evidence) -> Evidence:

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from zavis_bt.types import FREE, UNKNOWN, GridMap
+from zavis_bt.types import FREE, UNKNOWN, FloatArray, GridMap
 
 MIN_LENGTH = 0.3
 """Clusters shorter than this are seams of the map rather than ways into the unknown [m]."""
@@ -58,24 +58,25 @@ def find_frontiers(grid: GridMap, min_length: float = MIN_LENGTH) -> list[Fronti
 
 
 def frontier_goal(
-    frontier: Frontier, reachable: NDArray[np.bool_] | Callable[[NDArray[np.intp]], NDArray[np.bool_]]
-) -> tuple[int, int] | None:
+    frontier: Frontier, grid: GridMap, reachable: NDArray[np.bool_] | Callable[[FloatArray], NDArray[np.bool_]]
+) -> tuple[float, float] | None:
     """Choose where to drive to see past a frontier: the reachable member nearest the cluster's middle.
 
     Args:
         frontier: From `find_frontiers`.
-        reachable: (rows, cols) whether the robot can get to a cell, or a function that says so for (n, 2) cells.
+        grid: The map it was found in.
+        reachable: (rows, cols) whether the robot can get to a cell, or a function that says so for (n, 2) points [m].
 
     Returns:
-        The cell ``(row, col)``, or None if the robot can get to none of the members.
+        The centre of the chosen cell [m], or None if the robot can get to none of the members.
     """
-    cells = frontier.cells
-    allowed = reachable(cells) if callable(reachable) else reachable[cells[:, 0], cells[:, 1]]
+    points = grid.to_points(frontier.cells)
+    allowed = reachable(points) if callable(reachable) else reachable[frontier.cells[:, 0], frontier.cells[:, 1]]
     if not np.any(allowed):
         return None
-    offsets = cells - cells.mean(axis=0)
-    row, col = cells[np.where(allowed, (offsets**2).sum(axis=1), np.inf).argmin()]
-    return int(row), int(col)
+    squares = ((points - frontier.centroid) ** 2).sum(axis=1)
+    x, y = points[np.where(allowed, squares, np.inf).argmin()].tolist()
+    return x, y
 
 
 @njit(cache=True)

@@ -76,8 +76,8 @@ def update(
     xs, ys = corners(outline, dense, cos, sin, x, y, cell)
     offsets, columns = polygon_spans(xs, ys, rows, cols)
     _lower(log_odds, offsets, columns, model.miss, model.low)
+    _follow_beams(log_odds, x, y, beams, outline, dense, cell, model)
     if reach.max() > dense:
-        _lower_along_beams(log_odds, x, y, beams, outline, dense, cell, model)
         xs, ys = corners(outline, np.inf, cos, sin, x, y, cell)
         offsets, columns = polygon_spans(xs, ys, rows, cols)
         _open(log_odds, offsets, columns, model.gap)
@@ -164,7 +164,7 @@ def _open(log_odds: LogOddsArray, offsets: NDArray[np.int64], columns: NDArray[n
 
 
 @njit(cache=True)
-def _lower_along_beams(
+def _follow_beams(
     log_odds: LogOddsArray,
     x: float,
     y: float,
@@ -174,32 +174,51 @@ def _lower_along_beams(
     cell: float,
     model: SensorModel,
 ) -> None:
-    """Count a miss for the cells that single beams went through beyond the dense part of the scan.
+    """Take in the cells that single beams went through outside the area between the beams.
+
+    Beyond the dense part of the scan beams lie at least a cell apart, so each counts a miss. Nearer, where many may
+    cross one cell, they only make it free if nothing speaks against.
+    """
+    cos, sin, reach, kinds = beams
+    for i in range(len(reach)):
+        begin = max(outline[i, 0], outline[i - 1, 1])
+        end = reach[i] - (cell if kinds[i] == HIT else 0.0)
+        if begin < dense:
+            _walk(log_odds, x, y, cos[i], sin[i], begin / cell, min(end, dense) / cell, model.gap, model.gap)
+        if dense < end:
+            _walk(log_odds, x, y, cos[i], sin[i], dense / cell + 1.0, end / cell, model.miss, model.low)
+
+
+@njit(cache=True)
+def _walk(
+    log_odds: LogOddsArray,
+    x: float,
+    y: float,
+    cos: float,
+    sin: float,
+    begin: float,
+    end: float,
+    change: float,
+    least: float,
+) -> None:
+    """Lower the cells along a beam; occupied ones stay if the change is also the least value.
 
     One cell for each step along the longer axis: the one whose middle the beam comes nearest to, so that beams
     which only cut a corner say nothing.
     """
-    cos, sin, reach, kinds = beams
-    miss, low = np.float32(model.miss), np.float32(model.low)
-    for i in range(len(reach)):
-        begin = min(dense, max(outline[i, 0], outline[i - 1, 1])) / cell + 1.0
-        end = reach[i] / cell - (1.0 if kinds[i] == HIT else 0.0)
-        major, minor = (cos[i], sin[i]) if abs(cos[i]) >= abs(sin[i]) else (sin[i], cos[i])
-        steps = int((end - begin) * abs(major))
-        if steps <= 0:
-            continue
-        slope, sign = minor / abs(major), 1 if major > 0 else -1
-        if abs(cos[i]) >= abs(sin[i]):
-            col = math.floor(x + begin * cos[i]) + sign
-            at = y + (col + 0.5 - x) * sin[i] / cos[i]
-            for k in range(steps):
-                row = int(at + k * slope)
-                lowered = log_odds[row, col + k * sign] + miss
-                log_odds[row, col + k * sign] = lowered if lowered > low else low
-        else:
-            row = math.floor(y + begin * sin[i]) + sign
-            at = x + (row + 0.5 - y) * cos[i] / sin[i]
-            for k in range(steps):
-                col = int(at + k * slope)
-                lowered = log_odds[row + k * sign, col] + miss
-                log_odds[row + k * sign, col] = lowered if lowered > low else low
+    loss, low = np.float32(change), np.float32(least)
+    highest = np.float32(0) if change == least else np.float32(np.inf)
+    upright = abs(sin) > abs(cos)
+    major, minor = (sin, cos) if upright else (cos, sin)
+    along, across = (y, x) if upright else (x, y)
+    sign = 1 if major > 0 else -1
+    first = math.floor(along + begin * major) + sign
+    position = across + (first + 0.5 - along) * minor / major
+    slope = minor / abs(major)
+    stride_along, stride_across = (log_odds.shape[1], 1) if upright else (1, log_odds.shape[1])
+    flat = log_odds.reshape(-1)
+    for k in range(int((end - begin) * abs(major))):
+        index = (first + k * sign) * stride_along + int(position + k * slope) * stride_across
+        value = flat[index]
+        if low < value <= highest:
+            flat[index] = max(value + loss, low)

@@ -9,7 +9,7 @@ from pathlib import Path
 from zavis_bt.errors import InputError
 from zavis_bt.mapping.association import AssociationSettings, assign, is_duplicate, is_same_place
 from zavis_bt.mapping.evidence import Evidence
-from zavis_bt.mapping.semantic_file import SemanticState, decode, encode
+from zavis_bt.mapping.semantic_file import decode_landmarks, encode_landmarks
 from zavis_bt.types import Landmark, LandmarkSighting
 
 
@@ -66,15 +66,19 @@ class SemanticMap:
             landmark = self._merged[landmark]
         return landmark
 
+    def forget_visits(self) -> None:
+        """Make every landmark unvisited again, as for another target."""
+        self._visited.clear()
+
     def to_json(self) -> str:
-        """Return the map as JSON text, format ``zavis-semantic-map/1``; `from_json` gives an equal map that goes on."""
-        return encode(SemanticState(self._evidence, self._merged, self._visited, self._next_id))
+        """Return the landmarks as JSON text, format ``zavis-semantic-map/1``; visits belong to a search, not here."""
+        return encode_landmarks(self._landmarks)
 
     @classmethod
     def from_json(
         cls, text: str, settings: AssociationSettings | None = None, where: str = "semantic map"
     ) -> SemanticMap:
-        """Return the map that `to_json` wrote.
+        """Return a map with the landmarks of `to_json`, ready to fuse more sightings.
 
         Args:
             text: JSON.
@@ -85,9 +89,9 @@ class SemanticMap:
             InputError: The text is not a semantic map.
         """
         semantic = cls(settings)
-        state = decode(text, where)
-        semantic._evidence, semantic._merged = state.evidence, state.merged
-        semantic._visited, semantic._next_id = state.visited, state.next_id
+        landmarks = sorted(decode_landmarks(text, where), key=lambda landmark: landmark.id)
+        semantic._evidence = {landmark.id: Evidence.remembered(landmark) for landmark in landmarks}
+        semantic._next_id = max((landmark.id for landmark in landmarks), default=-1) + 1
         semantic._publish()
         return semantic
 

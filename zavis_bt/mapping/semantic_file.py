@@ -1,84 +1,79 @@
-"""``semantic_map.json``: landmarks for everybody to read, with the evidence needed to go on fusing."""
+"""Landmarks as JSON: the format ``zavis-semantic-map/1`` of ``semantic_map.json``."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Literal, NamedTuple
+import json
+from collections.abc import Sequence
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from zavis_bt.errors import InputError
-from zavis_bt.mapping.evidence import Evidence
+from zavis_bt.types import Landmark
 
-FORMAT: Literal["zavis-semantic-map/1"] = "zavis-semantic-map/1"
+FORMAT = "zavis-semantic-map/1"
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Id = Annotated[int, Field(ge=0)]
+Share = Annotated[float, Field(ge=0, le=1)]
 
 
-class SemanticState(NamedTuple):
-    """All that a semantic map holds."""
+class _Entry(BaseModel):
+    """A landmark; label and entropy only repeat what the probabilities say, for human readers."""
 
-    evidence: dict[int, Evidence]
-    """By landmark id, oldest first."""
-    merged: dict[int, int]
-    """Ids that are no more, and the older ids they were merged into."""
-    visited: set[int]
-    next_id: int
-
-
-class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-
-class _Evidence(_Strict):
-    weight: Positive
-    log_sums: Annotated[dict[str, Number], Field(min_length=1)]
-    position_sums: tuple[Number, Number, Number]
-    square_sum: Length
-    largest: Length
-
-
-class _Landmark(_Strict):
-    id: Id
-    label: str
-    probabilities: dict[str, Number]
+    id: Annotated[int, Field(ge=0)]
+    label: str = ""
+    entropy: float = 0.0
+    probabilities: Annotated[tuple[tuple[str, Share], ...], Field(min_length=1)]
     position: tuple[Number, Number, Number]
     radius: Length
     views: Annotated[int, Field(ge=1)]
-    visited: bool
-    evidence: _Evidence
+
+    @model_validator(mode="after")
+    def _consistent(self) -> _Entry:
+        labels = [label for label, _ in self.probabilities]
+        if len(set(labels)) < len(labels):
+            raise ValueError("a label occurs twice")
+        total = sum(p for _, p in self.probabilities)
+        if abs(total - 1) > 1e-3:
+            raise ValueError(f"the probabilities sum to {total:.6g}, not to 1")
+        return self
 
 
-class _File(_Strict):
+class _File(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
     format: Literal["zavis-semantic-map/1"]
-    landmarks: list[_Landmark]
-    merged: dict[Id, Id]
-    next_id: Id
+    landmarks: tuple[_Entry, ...]
 
     @model_validator(mode="after")
     def _consistent(self) -> _File:
         ids = [landmark.id for landmark in self.landmarks]
-        if ids != sorted(set(ids)):
-            raise ValueError("landmark ids must be unique and increasing")
-        for gone, kept in self.merged.items():
-            if gone in ids or kept >= gone or not (kept in ids or kept in self.merged):
-                raise ValueError(f"merged: {gone} cannot have become part of {kept} (an older landmark)")
-        if max([-1, *ids, *self.merged]) >= self.next_id:
-            raise ValueError(f"next_id {self.next_id} must be greater than every id")
+        if len(set(ids)) < len(ids):
+            raise ValueError("two landmarks have the same id")
         return self
 
 
-def encode(state: SemanticState) -> str:
+def encode_landmarks(landmarks: Sequence[Landmark]) -> str:
     """Return the file's content: indented JSON."""
-    landmarks = [_landmark(id, evidence, id in state.visited) for id, evidence in state.evidence.items()]
-    file = _File(format=FORMAT, landmarks=landmarks, merged=state.merged, next_id=state.next_id)
-    return file.model_dump_json(indent=2) + "\n"
+    entries = [
+        {
+            "id": landmark.id,
+            "label": landmark.label,
+            "entropy": landmark.entropy,
+            "probabilities": landmark.probabilities,
+            "position": landmark.position,
+            "radius": landmark.radius,
+            "views": landmark.views,
+        }
+        for landmark in landmarks
+    ]
+    return json.dumps({"format": FORMAT, "landmarks": entries}, indent=2, ensure_ascii=False) + "\n"
 
 
-def decode(text: str, where: str) -> SemanticState:
+def decode_landmarks(text: str, where: str) -> tuple[Landmark, ...]:
     """Read the file's content.
 
     Args:
@@ -86,7 +81,7 @@ def decode(text: str, where: str) -> SemanticState:
         where: The file's name, for messages.
 
     Returns:
-        What `encode` was given.
+        The landmarks `encode_landmarks` was given.
 
     Raises:
         InputError: The text is not a semantic map.
@@ -95,41 +90,9 @@ def decode(text: str, where: str) -> SemanticState:
         file = _File.model_validate_json(text)
     except ValidationError as error:
         fault = error.errors()[0]
-        place = ".".join(str(part) for part in fault["loc"])
-        raise InputError(
-            f"{where}: {place + ': ' if place else ''}{fault['msg'].removeprefix('Value error, ')}"
-        ) from error
-    return SemanticState(
-        {landmark.id: _evidence(landmark) for landmark in file.landmarks},
-        dict(file.merged),
-        {landmark.id for landmark in file.landmarks if landmark.visited},
-        file.next_id,
+        place = "".join(f"{part}: " for part in fault["loc"])
+        message = fault["msg"].removeprefix("Value error, ")
+        raise InputError(f"{where}: {place}{message} (a semantic map, format {FORMAT})") from error
+    return tuple(
+        Landmark(entry.id, entry.probabilities, entry.position, entry.radius, entry.views) for entry in file.landmarks
     )
-
-
-def _landmark(id: int, evidence: Evidence, visited: bool) -> _Landmark:
-    return _Landmark(
-        id=id,
-        label=evidence.label,
-        probabilities=_plain(evidence.probabilities),
-        position=evidence.position,
-        radius=evidence.radius,
-        views=evidence.views,
-        visited=visited,
-        evidence=_Evidence(
-            weight=evidence.weight,
-            log_sums=_plain(evidence.log_sums),
-            position_sums=evidence.position_sums,
-            square_sum=evidence.square_sum,
-            largest=evidence.largest,
-        ),
-    )
-
-
-def _evidence(landmark: _Landmark) -> Evidence:
-    sums = landmark.evidence
-    return Evidence(sums.weight, landmark.views, sums.log_sums, sums.position_sums, sums.square_sum, sums.largest)
-
-
-def _plain(values: Mapping[str, float]) -> dict[str, float]:
-    return {name: float(value) for name, value in values.items()}

@@ -13,6 +13,7 @@ BROKEN, OPEN, HIT = 0, 1, 2  # what became of a beam: no reading, nothing within
 Beams = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]
 """(n,) cosines and sines in the map, (n,) reach [m] (0 for a broken beam), (n,) `BROKEN`, `OPEN` or `HIT`."""
 
+_WIDEST = 0.26  # beams further apart than 15° say nothing about the area between them [rad]
 _STEEPEST = 5.7  # 1 / tan 10°: a surface seen at a flatter angle than 10° is not told from a jump in depth
 
 
@@ -101,6 +102,8 @@ def free_outline(reach: NDArray[np.float64], step: float, cell: float) -> NDArra
     n = len(reach)
     circle = n > 2 and abs(abs(step) * n - math.tau) < abs(step) / 2
     outline = np.zeros((n, 2))
+    if abs(step) > _WIDEST:
+        return outline
     for i in range(n if circle else n - 1):
         a, b = reach[i], reach[(i + 1) % n]
         before = reach[i - 1] if i > 0 or circle else 0.0
