@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from zavis_bt.documents import explain
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.types import Pose2D
 
@@ -159,6 +160,12 @@ def _parse(text: str, folder: Path) -> tuple[Episode | None, list[str]]:
     ), []
 
 
+def _fault(fault: dict[str, Any]) -> str:
+    if fault["type"] == "json_invalid":
+        return f"is not JSON: {fault['ctx']['error']}".replace(" at line 1 column", ", column") + " (one object a line)"
+    return explain(fault, _EpisodeLine)
+
+
 def _contradictions(episode: Episode) -> list[str]:
     """Return what is wrong with an episode whose form is right."""
     faults = []
@@ -175,24 +182,3 @@ def _contradictions(episode: Episode) -> list[str]:
     if not episode.world.is_file():
         faults.append(f"world: no such file: {episode.world} (a path relative to the episodes file)")
     return faults
-
-
-_FIELDS = {
-    name: tuple(model.model_fields)
-    for name, model in (("", _EpisodeLine), ("target", _TargetLine), ("objects", _ObjectLine))
-}
-
-
-def _fault(entry: dict[str, Any]) -> str:
-    """Return one of pydantic's findings as ``keys: what is wrong (what would be right)``."""
-    where = ".".join(str(key) for key in entry["loc"])
-    message = entry["msg"][0].lower() + entry["msg"][1:]
-    match entry["type"]:
-        case "json_invalid":
-            return f"{message.replace(' at line 1 column', ', column')} (one JSON object a line)"
-        case "missing":
-            return f"{where}: is missing (add it)"
-        case "extra_forbidden":
-            parent = entry["loc"][0] if len(entry["loc"]) > 1 else ""
-            return f"{where}: unknown key{did_you_mean(str(entry['loc'][-1]), _FIELDS.get(str(parent), ()))}"
-    return f"{where or 'line'}: {message} (not {entry['input']!r:.40})"
