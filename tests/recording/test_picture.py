@@ -51,14 +51,7 @@ def test_everything_given_is_drawn():
     )
     assert picture.dtype == np.uint8
     assert picture.shape[2] == 3
-    for colour in (
-        GRID_COLOURS[FREE],
-        GRID_COLOURS[OCCUPIED],
-        (255, 199, 26),
-        (146, 72, 196),
-        (43, 58, 103),
-        (34, 160, 84),
-    ):
+    for colour in (GRID_COLOURS[FREE], GRID_COLOURS[OCCUPIED], FOUND, CANDIDATE, VIEWPOINT, START):
         assert contains(picture, colour)
 
 

@@ -4,15 +4,12 @@ from zavis_bt.recording.picture import draw_map
 from zavis_bt.recording.plain import to_json, to_plain
 from zavis_bt.recording.recorder import RunRecorder
 from zavis_bt.recording.run_folder import Run, RunFolder, load_run, new_run_folder
-from zavis_bt.recording.semantic_map import landmarks_to_json, load_landmarks
 
 __all__ = [
     "Run",
     "RunFolder",
     "RunRecorder",
     "draw_map",
-    "landmarks_to_json",
-    "load_landmarks",
     "load_run",
     "new_run_folder",
     "to_json",

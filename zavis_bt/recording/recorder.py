@@ -11,12 +11,12 @@ from typing import Any, BinaryIO
 
 from zavis_bt.errors import InputError, ZavisError
 from zavis_bt.mapping import save_map
+from zavis_bt.mapping.semantic_file import encode_landmarks
 from zavis_bt.recording.candidate_images import encode_png, write_candidates
 from zavis_bt.recording.files import replace_atomically, write_atomically
 from zavis_bt.recording.picture import draw_map
 from zavis_bt.recording.plain import to_json
 from zavis_bt.recording.run_folder import ENDED, FORMAT, RUNNING, RunFolder
-from zavis_bt.recording.semantic_map import landmarks_to_json
 from zavis_bt.recording.tree_text import tree_text
 from zavis_bt.recording.versions import versions
 from zavis_bt.types import Event, MissionResult, Observed, Pose2D
@@ -100,10 +100,8 @@ class RunRecorder:
         files = self.folder
         try:
             self._attempt(files.map, lambda: self._write_map(mission))
-            self._attempt(
-                files.semantic_map, lambda: write_atomically(files.semantic_map, landmarks_to_json(mission.landmarks))
-            )
-            self._put(files.trajectory, lambda: self._trajectory())
+            self._put(files.semantic_map, lambda: encode_landmarks(mission.landmarks))
+            self._put(files.trajectory, self._trajectory)
             self._put(files.tree, lambda: tree_text(mission.nodes))
             self._attempt(files.candidates, lambda: self._write_candidates(mission))
             self._put(files.picture, lambda: self._picture(mission, result))

@@ -14,7 +14,7 @@ import numpy as np
 
 from zavis_bt.errors import InputError
 from zavis_bt.mapping import load_map
-from zavis_bt.recording.semantic_map import load_landmarks
+from zavis_bt.mapping.semantic_file import decode_landmarks
 from zavis_bt.types import Event, FloatArray, GridMap, Landmark, MissionResult
 
 FORMAT = "zavis-run/1"
@@ -124,18 +124,29 @@ def load_run(folder: Path | str) -> Run:
         problems=tuple(content.get("problems", ())),
         events=tuple(_events(files.events)),
         grid=load_map(files.map) if files.map.is_file() else None,
-        landmarks=load_landmarks(files.semantic_map) if files.semantic_map.is_file() else (),
+        landmarks=_landmarks(files.semantic_map),
         trajectory=_trajectory(files.trajectory),
         candidates=tuple(_read_json(index)) if index.is_file() else (),
-        tree=files.tree.read_text(encoding="utf-8") if files.tree.is_file() else "",
+        tree=_read(files.tree) if files.tree.is_file() else "",
     )
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not text: {error}") from error
+
+
+def _landmarks(path: Path) -> tuple[Landmark, ...]:
+    return decode_landmarks(_read(path), str(path)) if path.is_file() else ()
 
 
 def _read_json(path: Path) -> Any:
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        return json.loads(_read(path))
     except ValueError as error:
         raise InputError(f"{path}: not JSON: {error}") from error
 
@@ -166,7 +177,7 @@ def _trajectory(path: Path) -> FloatArray:
     if not path.is_file():
         return np.empty((0, 4))
     try:
-        rows = [[float(cell) for cell in line.split(",")] for line in path.read_text().splitlines()[1:]]
+        rows = [[float(cell) for cell in line.split(",")] for line in _read(path).splitlines()[1:]]
         return np.array(rows, dtype=np.float64).reshape(-1, 4)
     except ValueError as error:
         raise InputError(f"{path}: not a trajectory: {error}") from error
