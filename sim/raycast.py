@@ -83,6 +83,12 @@ def _free_squares(occupied: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 
 @njit(cache=True)
+def _component(value: float) -> float:
+    """Return a component of a direction, without those whose inverse is not finite."""
+    return value if abs(value) > 1e-200 else 0.0
+
+
+@njit(cache=True)
 def _cast(
     leaps: NDArray[np.uint8], u: float, v: float, angles: FloatArray, reach: float, resolution: float
 ) -> FloatArray:
@@ -93,7 +99,7 @@ def _cast(
     if not (0 <= first_col < cols and 0 <= first_row < rows):
         return ranges
     for beam in range(angles.size):
-        du, dv = math.cos(angles[beam]), math.sin(angles[beam])
+        du, dv = _component(math.cos(angles[beam])), _component(math.sin(angles[beam]))
         quadrant = (1 if du < 0 else 0) + (2 if dv < 0 else 0)
         inverse_u = 1.0 / du if du != 0.0 else np.inf
         inverse_v = 1.0 / dv if dv != 0.0 else np.inf

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sim.raycast import RayCaster
 
 _TOUCH = 1e-9  # [m] two edges this close touch
+_EDGE = 1e-6  # [cells] a point this close to the edge of a cell is in the cells on both sides
 _SHARED = ("occupied", "furniture_cells", "walls", "ray_caster")  # what depends on the map and the furniture alone
 
 
@@ -113,11 +114,19 @@ class World:
     def fits(self, x: float, y: float, radius: float) -> bool:
         """Return whether a disc robot can stand at (x, y).
 
-        The costmap convention: its centre is at least ``radius`` from the centre of every cell that is not free. What
-        lies outside the map is not free.
+        The costmap convention: its centre, or the centre of a cell that holds it, is at least ``radius`` from the
+        centre of every cell that is not free. What lies outside the map is not free.
         """
         resolution, (x0, y0) = self.grid.resolution, self.grid.origin
         u, v, reach = (x - x0) / resolution - 0.5, (y - y0) / resolution - 0.5, radius / resolution
+        if self._clear(u, v, reach):
+            return True
+        cols = {math.floor(u + 0.5 - _EDGE), math.floor(u + 0.5 + _EDGE)}
+        rows = {math.floor(v + 0.5 - _EDGE), math.floor(v + 0.5 + _EDGE)}
+        return any(self._clear(col, row, reach) for col in cols for row in rows)
+
+    def _clear(self, u: float, v: float, reach: float) -> bool:
+        """Return whether no cell's centre that is not free is within reach of (u, v), all in cells."""
         cols = np.arange(math.ceil(u - reach), math.floor(u + reach) + 1)
         rows = np.arange(math.ceil(v - reach), math.floor(v + reach) + 1)
         near = (rows[:, None] - v) ** 2 + (cols - u) ** 2 < (reach - _TOUCH) ** 2

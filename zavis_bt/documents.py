@@ -144,7 +144,9 @@ def check(document: Document, model: type[Model]) -> tuple[Model | None, list[st
     try:
         return model.model_validate(document.data), []
     except ValidationError as error:
-        return None, [f"{document.where(*fault['loc'])}: {explain(dict(fault), model)}" for fault in error.errors()]
+        # An unknown key comes first: it is often the cause of a missing one.
+        faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+        return None, [f"{document.where(*fault['loc'])}: {explain(dict(fault), model)}" for fault in faults]
 
 
 def explain(fault: Mapping[str, Any], model: type[BaseModel]) -> str:

@@ -67,6 +67,10 @@ class MatcherSettings:
     """Mean score of any text where the box shows nothing."""
     half_similarity: float = 0.2
     """Word similarity at which a text gets half of what an exact name gets."""
+    lookalikes: float = 0.02
+    """Share of objects that resemble what a text names, whatever the words: the reason why a person is asked."""
+    resemblance: tuple[float, float] = (0.5, 0.95)
+    """How well the text then fits, between these."""
     instance_spread: float = 0.7
     """Spread between instances and texts, the same in every view."""
     view_spread: float = 0.8

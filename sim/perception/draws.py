@@ -7,15 +7,16 @@ judged alike whatever was judged before it, and two judgements of one instance c
 from __future__ import annotations
 
 import hashlib
+import math
 from functools import lru_cache
 
 import numpy as np
+from numba import vectorize
 from numpy.typing import NDArray
 
 from zavis_bt.types import FloatArray, RgbdFrame
 
 Keys = NDArray[np.uint64] | int
-_STEP = np.uint64(0x9E3779B97F4A7C15)  # 2⁶⁴ over the golden ratio, the increment of SplitMix64
 
 
 @lru_cache(maxsize=65536)
@@ -44,20 +45,40 @@ class Draws:
 
     def uniform(self, question: str, *keys: Keys) -> FloatArray:
         """Return numbers in [0, 1), one for each combination of keys; arrays of keys are broadcast."""
-        state = np.atleast_1d(np.asarray(self._seed ^ key_of(question), dtype=np.uint64))
-        for key in keys:
-            state = _mix(state ^ np.asarray(key, dtype=np.uint64))
-        return np.asarray((_mix(state) >> np.uint64(11)) * 2.0**-53)
+        return np.atleast_1d(_unit(self._state(question, keys)))
 
     def normal(self, question: str, *keys: Keys) -> FloatArray:
-        """Return standard normal numbers, one for each combination of keys (Box-Muller)."""
-        radius = np.sqrt(-2.0 * np.log1p(-self.uniform(question, *keys)))
-        return np.asarray(radius * np.cos(2.0 * np.pi * self.uniform(question + "'", *keys)))
+        """Return standard normal numbers, one for each combination of keys."""
+        return np.atleast_1d(_normal(self._state(question, keys)))
+
+    def _state(self, question: str, keys: tuple[Keys, ...]) -> NDArray[np.uint64]:
+        state: NDArray[np.uint64] = _mix(np.uint64(self._seed), np.uint64(key_of(question)))
+        for key in keys:
+            state = _mix(state, key if isinstance(key, np.ndarray) else np.uint64(key))
+        return state
 
 
-def _mix(state: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return SplitMix64's output for each state."""
-    state = state + _STEP
+_ufunc = vectorize(cache=True)  # type: ignore[no-untyped-call]  # numba does not type it
+
+
+@_ufunc
+def _mix(state: np.uint64, key: np.uint64) -> np.uint64:
+    """Return SplitMix64's next output after the state was changed by a key."""
+    state = (state ^ key) + np.uint64(0x9E3779B97F4A7C15)  # 2⁶⁴ over the golden ratio
     state = (state ^ (state >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     state = (state ^ (state >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return np.asarray(state ^ (state >> np.uint64(31)))
+    return state ^ (state >> np.uint64(31))
+
+
+@_ufunc
+def _unit(state: np.uint64) -> float:
+    """Return a number in [0, 1) of a state's upper 53 bits."""
+    return (state >> np.uint64(11)) * 2.0**-53
+
+
+@_ufunc
+def _normal(state: np.uint64) -> float:
+    """Return a standard normal number of a state: Box-Muller on its two halves."""
+    first = ((state >> np.uint64(32)) + 0.5) * 2.0**-32
+    second = (state & np.uint64(0xFFFFFFFF)) * 2.0**-32
+    return math.sqrt(-2.0 * math.log(first)) * math.cos(2.0 * math.pi * second)

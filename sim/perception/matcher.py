@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.frame import InstanceView, instances_of
 from sim.perception.curves import MatcherSettings, crop_quality, name_fit
@@ -38,6 +39,7 @@ class SimMatcher:
         self._settings = settings or MatcherSettings()
         self._draws = Draws(rng)
         self._fits: dict[tuple[str, str, bool], float] = {}
+        self._loose: dict[str, float] = {}
 
     def match(self, frame: RgbdFrame, boxes: Sequence[Box], texts: Sequence[str]) -> FloatArray:
         """Return matching scores m, shape (n_boxes, n_texts), on the 100 × cosine scale (Eq. matching_score).
@@ -56,14 +58,18 @@ class SimMatcher:
             else:
                 noise = self._settings.instance_spread * self._draws.normal("instance", key_of(shown.id), keys)
                 noise += self._settings.view_spread * self._draws.normal("view", key_of(shown.id), keys, moment)
-                row[:] = self._means(shown, overlap, queries) + noise
+                row[:] = self._means(shown, overlap, queries, keys) + noise
         return scores
 
-    def _means(self, shown: InstanceView, overlap: float, queries: Sequence[TextQuery]) -> FloatArray:
+    def _means(
+        self, shown: InstanceView, overlap: float, queries: Sequence[TextQuery], keys: NDArray[np.uint64]
+    ) -> FloatArray:
         """Return the mean score of each text for a crop of the instance."""
         settings = self._settings
         category = normal_name(shown.category)
         fits = np.array([self._fit(query.noun, category, shown.is_furniture) for query in queries])
+        if not shown.is_furniture:
+            fits = np.maximum(fits, self._resemblance(shown, queries, keys))
         quality = crop_quality(
             np.sqrt(np.array(shown.box.area)), np.array(shown.visible_fraction), np.array(overlap), settings
         )
@@ -75,6 +81,20 @@ class SimMatcher:
         colour = parse_text(shown.colour).colour if shown.colour else None
         terms = [0.0 if not q.colour or not colour else same if q.colour == colour else -other for q in queries]
         return np.where(np.array(terms) < 0, np.array(terms) * fits, terms)
+
+    def _resemblance(self, shown: InstanceView, queries: Sequence[TextQuery], keys: NDArray[np.uint64]) -> FloatArray:
+        """Return how much an object happens to look like what each text names; nothing looks like furniture."""
+        low, high = self._settings.resemblance
+        rate, degree = (self._draws.uniform(question, key_of(shown.id), keys) for question in ("alike", "degree"))
+        loose = np.array([self._looseness(query.noun) for query in queries])
+        return np.where(rate < self._settings.lookalikes * loose, low + (high - low) * degree, 0.0)
+
+    def _looseness(self, noun: str) -> float:
+        """Return 1 for the name of a loose object, 0 for the name of a piece of furniture."""
+        if noun not in self._loose:
+            alike = self._similarity(noun, _FAMILY) if noun else 0.0
+            self._loose[noun] = float(np.clip(1.0 - alike / self._settings.half_similarity, 0.0, 1.0))
+        return self._loose[noun]
 
     def _fit(self, noun: str, category: str, is_furniture: bool) -> float:
         """Return how well a noun names a category, 0 to 1; remembered, since the words are few."""
