@@ -99,7 +99,7 @@ class Behaviour(_Leaf):
         self.wires: dict[str, str] = {}
         self.written: dict[str, Any] = {}
         self.takes_over: tuple[TakenOver, ...] = ()
-        self._begun = False
+        self.__begun = False
         self.bind(**inputs)
 
     def bind(self, **inputs: Any) -> None:
@@ -145,28 +145,28 @@ class Behaviour(_Leaf):
     @property
     def begun(self) -> bool:
         """Whether it was initialised and not yet terminated."""
-        return self._begun
+        return self.__begun
 
     def tick(self) -> Iterator[py_trees.behaviour.Behaviour]:
         """Run one tick; see the class for what happens to exceptions."""
         started = self.status is Status.RUNNING
         try:
             if not started:
-                self._begin()
+                self.__begin()
                 started = True
             status = self.update()
             if not isinstance(status, Status) or status is Status.INVALID:
                 raise TypeError(f"update() returned {status!r}, not RUNNING, SUCCESS or FAILURE")
         except Exception as error:  # containment: whatever a behaviour raises is its own failure, not the tree's end
-            status = self._contain(error)
+            status = self.__contain(error)
         if status is not Status.RUNNING:
-            self._end(status, quietly=not started)
+            self.__end(status, quietly=not started)
         self.status = status
         yield self  # type: ignore[misc]  # it is a py_trees behaviour, see _Leaf
 
     def stop(self, new_status: Status) -> None:
         """Terminate if begun, and take the status."""
-        self._end(new_status)
+        self.__end(new_status)
         self.status = new_status
         self.iterator = self.tick()
 
@@ -181,24 +181,24 @@ class Behaviour(_Leaf):
     def _set_output(self, port_name: str, value: Any) -> None:
         setattr(self, port_name, value)
 
-    def _begin(self) -> None:
+    def __begin(self) -> None:
         for rival in self.takes_over:
             rival.give_way(self)
         self.feedback_message = ""
-        self._begun = True
+        self.__begun = True
         self.initialise()
 
-    def _end(self, status: Status, quietly: bool = False) -> None:
-        if not self._begun:
+    def __end(self, status: Status, quietly: bool = False) -> None:
+        if not self.__begun:
             return
-        self._begun = False
+        self.__begun = False
         try:
             self.terminate(status)
         except Exception:  # containment: what one behaviour cannot stop must not keep the others from being stopped
             level = logging.DEBUG if quietly else logging.ERROR  # after a failed initialise half of it is missing
             log.log(level, "%s: terminate() raised", self.name, exc_info=True)
 
-    def _contain(self, error: Exception) -> Status:
+    def __contain(self, error: Exception) -> Status:
         if isinstance(error, ZavisError):
             return self.fail(str(error))
         log.error("%s raised", self.name, exc_info=error)

@@ -33,6 +33,8 @@ def type_name(type_: Any) -> str:
     arguments = typing.get_args(type_)
     if is_union(type_):
         return " | ".join(type_name(argument) for argument in arguments)
+    if typing.get_origin(type_) is typing.Literal:
+        return " | ".join(map(repr, arguments))
     name = getattr(typing.get_origin(type_) or type_, "__name__", str(type_))
     inner = ", ".join("..." if argument is Ellipsis else type_name(argument) for argument in arguments)
     return f"{name}[{inner}]" if inner else name
@@ -95,6 +97,8 @@ def assignable(source: Any, target: Any) -> bool:
     """Return whether every value of type ``source`` may go where ``target`` is expected."""
     if source in (Any, object) or target in (Any, object) or source == target:
         return True
+    if typing.get_origin(source) is typing.Literal:
+        return all(assignable(type(value), target) for value in typing.get_args(source))
     if is_union(source):
         return all(assignable(part, target) for part in typing.get_args(source))
     if is_union(target):
@@ -128,6 +132,8 @@ def coercer(type_: Any) -> Coercer:
         return lambda value: value
     if type_ in _SCALAR_COERCERS:
         return _SCALAR_COERCERS[type_]
+    if typing.get_origin(type_) is typing.Literal:
+        return _literal_coercer(typing.get_args(type_))
     if is_union(type_):
         return _union_coercer([coercer(part) for part in typing.get_args(type_)], type_)
     origin, arguments = typing.get_origin(type_), typing.get_args(type_)
@@ -139,15 +145,15 @@ def coercer(type_: Any) -> Coercer:
 def _float(value: Any) -> float:
     if isinstance(value, float):
         return value
-    if isinstance(value, Real) and type(value) is not bool:
-        return float(value)
-    raise TypeError(f"takes float, not {describe(value)}")
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"takes float, not {describe(value)}")
+    return float(value)
 
 
 def _int(value: Any) -> int:
-    if isinstance(value, Integral) and type(value) is not bool:
-        return int(value)
-    raise TypeError(f"takes int, not {describe(value)}")
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise TypeError(f"takes int, not {describe(value)}")
+    return int(value)
 
 
 def _bool(value: Any) -> bool:
@@ -173,6 +179,15 @@ def _union_coercer(parts: list[Coercer], type_: Any) -> Coercer:
         if results:
             return results[0]
         raise TypeError(f"takes {type_name(type_)}, not {describe(value)}")
+
+    return coerce
+
+
+def _literal_coercer(values: tuple[Any, ...]) -> Coercer:
+    def coerce(value: Any) -> Any:
+        if value in values:
+            return value
+        raise TypeError(f"takes {' | '.join(map(repr, values))}, not {describe(value)}")
 
     return coerce
 
