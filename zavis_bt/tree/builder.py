@@ -15,7 +15,7 @@ from zavis_bt.tree.behaviour import Behaviour
 from zavis_bt.tree.composites import ForEach, Guard, ReactiveSelector, Recovery
 from zavis_bt.tree.condition import parse_condition
 from zavis_bt.tree.controls import CONTROLS, SET
-from zavis_bt.tree.decorators import Assign, Call, Condition, Timeout, When
+from zavis_bt.tree.decorators import Assign, Call, Condition, Repeat, Retry, Timeout, When
 from zavis_bt.tree.faults import Mark
 from zavis_bt.tree.library import Library
 from zavis_bt.tree.ports import Port
@@ -224,10 +224,10 @@ class _Instance:
             case "retry" if "recover" in slots:
                 return Recovery(name, do[0], slots["recover"][0], given["attempts"])
             case "retry":
-                return py_trees.decorators.Retry(name, do[0], given["attempts"])
+                return Retry(name, do[0], given["attempts"])
             case "repeat":
                 times = -1 if given["times"] == "forever" else given["times"]
-                return py_trees.decorators.Repeat(name, do[0], times)
+                return Repeat(name, do[0], times)
             case "timeout":
                 return Timeout(name, do[0], given["seconds"])
             case "invert":

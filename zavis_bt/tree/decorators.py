@@ -48,6 +48,32 @@ class Timeout(Decorator):
         return self.decorated.status
 
 
+class Retry(py_trees.decorators.Retry):
+    """py_trees' own, saying which attempt it is."""
+
+    def update(self) -> Status:
+        """Return the child's status, RUNNING while attempts are left."""
+        status = super().update()
+        failed = status is Status.FAILURE
+        done = f"{self.failures} attempts failed" if failed else f"attempt {self.failures + 1} of {self.num_failures}"
+        self.feedback_message = done
+        return status
+
+
+class Repeat(py_trees.decorators.Repeat):
+    """py_trees' own, saying which round it is."""
+
+    def update(self) -> Status:
+        """Return the child's status, RUNNING while rounds are left."""
+        status = super().update()
+        if status is not Status.RUNNING:
+            self.feedback_message = f"{self.success} rounds"
+            return status
+        rounds = f" of {self.num_success}" if self.num_success > 0 else ""
+        self.feedback_message = f"round {self.success + 1}{rounds}"
+        return status
+
+
 class Call(Decorator):
     """A tree called as a kind. Its own variables begin anew with each start."""
 
