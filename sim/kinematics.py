@@ -98,7 +98,7 @@ class OdometryError(NamedTuple):
 
 def at_rest(x: float, y: float, yaw: float) -> Motion:
     """Return the state of a base that stands there and never met anything."""
-    place = Place(x, y, yaw)
+    place = Place(float(x), float(y), float(yaw))
     return Motion(place, place, 0.0, 0.0, 0.0, Contact(False, False, place, 0))
 
 

@@ -52,8 +52,8 @@ class Physics:
     def command(self, linear: float, angular: float, limits: BaseLimits, lasting: float) -> None:
         """Drive with a velocity, clipped to the limits, for ``lasting`` seconds; then slow down to rest."""
         self._command = Drive(
-            min(max(linear, -limits.max_reverse), limits.max_linear),
-            min(max(angular, -limits.max_angular), limits.max_angular),
+            float(min(max(linear, -limits.max_reverse), limits.max_linear)),
+            float(min(max(angular, -limits.max_angular), limits.max_angular)),
             self.step + round(lasting * STEPS_PER_SECOND),
             limits.linear_acceleration / STEPS_PER_SECOND,
             limits.angular_acceleration / STEPS_PER_SECOND,

@@ -89,11 +89,11 @@ def _put_down(
     world: World, footprint: Footprint, start: Pose2D, noise: NoiseSettings, rng: np.random.Generator, memory: float
 ) -> Physics:
     grid = world.grid
-    ground = Ground(world.occupied, grid.resolution, *grid.origin)
+    ground = Ground(world.occupied, float(grid.resolution), float(grid.origin[0]), float(grid.origin[1]))
     body = Body.of(footprint, grid.resolution)
     _check_start(world, ground, body, start)
     walk = (noise.rotation_per_radian, noise.rotation_per_metre, noise.distance_per_metre, noise.distance_per_radian)
-    error = OdometryError(any(walk), *walk)
+    error = OdometryError(any(walk), *map(float, walk))
     return Physics(ground, body, start, error=error, rng=rng, memory=memory)
 
 
