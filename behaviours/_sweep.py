@@ -84,7 +84,9 @@ def spread(centre: float, half_width: float, step: float, low: float, high: floa
     return sorted({round(min(max(angle, low), high), 6) for angle in angles})
 
 
-def sweep_directions(spec: RobotSpec, sector: float, overlap: float, tilts: Sequence[float]) -> list[tuple[float, float]]:
+def sweep_directions(
+    spec: RobotSpec, sector: float, overlap: float, tilts: Sequence[float]
+) -> list[tuple[float, float]]:
     """Return the directions of a sweep across a sector straight ahead, from right to left and back with each tilt.
 
     Args:

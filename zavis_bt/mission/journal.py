@@ -18,14 +18,10 @@ class MissionJournal:
     (candidates: shown to the person), ``found`` (candidate: confirmed). Any other kind is kept and counted.
     """
 
-    def __init__(self, clock: Clock, sinks: tuple[Callable[[Event], None], ...] = ()) -> None:
-        """Start empty.
-
-        Args:
-            clock: Stamps the events.
-            sinks: Called with each event as it happens, e.g. a file.
-        """
-        self._clock, self._sinks = clock, sinks
+    def __init__(self, clock: Clock) -> None:
+        """Start empty; ``clock`` stamps the events."""
+        self._clock = clock
+        self.sinks: list[Callable[[Event], None]] = []
         self.counts: Counter[str] = Counter()
         self.path: Path | None = None
         self.viewpoints: tuple[Viewpoint, ...] = ()
@@ -49,5 +45,5 @@ class MissionJournal:
             case "found":
                 self.found = data["candidate"]
         event = Event(self._clock.now(), kind, data)
-        for sink in self._sinks:
+        for sink in self.sinks:
             sink(event)

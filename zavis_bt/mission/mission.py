@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,8 +77,6 @@ class Mission:
         task: Task,
         *,
         settings: MissionSettings | None = None,
-        observers: Sequence[Observer] = (),
-        sinks: Sequence[Callable[[Event], None]] = (),
     ) -> None:
         """Compose the mission; nothing moves yet.
 
@@ -89,8 +87,6 @@ class Mission:
             search: What to look for.
             task: Names for the result.
             settings: Bounds and rates.
-            observers: Viewers and recorders; what they raise is logged and dropped.
-            sinks: Get each journal event as it happens.
 
         Raises:
             TreeError: A behaviour wants a resource that no mission has.
@@ -98,8 +94,8 @@ class Mission:
         """
         self._settings = settings or MissionSettings()
         self._parts, self._search, self._task, self._tree = parts, search, task, tree
-        self._observers = list(observers)
-        self.journal = MissionJournal(parts.clock, tuple(sinks))
+        self._observers: list[Observer] = []
+        self.journal = MissionJournal(parts.clock)
         self._robot = SafeRobot(parts.robot, self._settings.safety, self.journal)
         self._mapper = Mapper(parts.robot.spec, self._settings.resolution)
         self._trajectory: list[tuple[float, float]] = []
@@ -171,6 +167,17 @@ class Mission:
             except Exception:  # whoever watches must not stop what is watched
                 _LOG.exception("%s failed and is dropped", type(observer).__name__)
                 self._observers.remove(observer)
+
+    def observe(self, observer: Observer, events: Callable[[Event], None] | None = None) -> None:
+        """Add a viewer or recorder before the run; what it raises is logged, and it is dropped.
+
+        Args:
+            observer: Told each tick.
+            events: Gets each journal event as it happens.
+        """
+        self._observers.append(observer)
+        if events is not None:
+            self.journal.sinks.append(events)
 
     # -- the run -------------------------------------------------------------------------------------------------
 

@@ -51,16 +51,21 @@ def free_distance(points: FloatArray, twist: Twist2D, spec: RobotSpec, tolerance
     reach = spec.footprint.length / 2 + forward * spec.footprint.centre_x
     if abs(curvature) < 1e-3:
         along, across = x, y
+        front = np.sqrt(np.maximum(reach**2 - across**2, 0.0)) if spec.footprint.disc else np.full_like(x, reach)
     else:
-        radius = 1 / curvature
-        across = np.hypot(x, y - radius) - abs(radius)
-        along = np.arctan2(x * np.sign(radius), (radius - y) * np.sign(radius)) * abs(radius)
-    front = reach
-    if spec.footprint.disc:  # a disc's front recedes towards its sides
-        front = np.sqrt(np.maximum(reach**2 - across**2, 0.0))
+        radius, side = abs(1 / curvature), math.copysign(1.0, curvature)
+        from_centre = np.hypot(x, y - side * radius)
+        across = from_centre - radius
+        along = np.arctan2(x, radius - side * y) * radius
+        front = _arc_front(from_centre, radius, reach) if spec.footprint.disc else np.full_like(x, reach)
     ahead = (np.abs(across) < half_width) & (along > 0.0)
-    distances = np.where(ahead, along - front, math.inf)
-    return max(float(distances.min()), 0.0)
+    return max(float(np.min(along - front, where=ahead, initial=math.inf)), 0.0)
+
+
+def _arc_front(from_centre: FloatArray, radius: float, reach: float) -> FloatArray:
+    """Return how far ahead on its arc a disc touches points at these distances from the turning centre [m]."""
+    cosine = (from_centre**2 + radius**2 - reach**2) / np.maximum(2 * from_centre * radius, 1e-9)
+    return np.asarray(radius * np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
 class SafeBase:
@@ -185,4 +190,3 @@ class SafeRobot:
     def close(self) -> None:
         """Stop and release the devices."""
         self._robot.close()
-

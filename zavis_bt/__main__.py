@@ -1,0 +1,5 @@
+"""`python -m zavis_bt` is `zavis`."""
+
+from zavis_bt.cli import main
+
+main()

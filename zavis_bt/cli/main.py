@@ -1,0 +1,77 @@
+"""`zavis …`: the command line's root, and how its commands end.
+
+Exit codes: 0 done, 1 user error (one line, no traceback), 2 usage, 3 bug (traceback), 4 mission failed,
+130 interrupted.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from zavis_bt import __version__
+from zavis_bt.cli import bench, demo, run, tree, world
+from zavis_bt.errors import ZavisError
+
+USER_ERROR, BUG, FAILED, INTERRUPTED = 1, 3, 4, 130
+
+
+class Guarded(TyperGroup):
+    """Turns whatever a command raises into one line and an exit code, in one place."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except ZavisError as error:
+            print(error, file=sys.stderr)
+            raise typer.Exit(USER_ERROR) from None
+        except KeyboardInterrupt:
+            print("interrupted", file=sys.stderr)
+            raise typer.Exit(INTERRUPTED) from None
+        except BrokenPipeError:  # the reader of our output has gone: nothing to say and nobody to say it to
+            sys.stderr.close()
+            raise typer.Exit(USER_ERROR) from None
+        except Exception as error:  # the one place where a bug is told from a user's error
+            if type(error).__module__.split(".")[0] in ("typer", "click"):
+                raise
+            traceback.print_exc()
+            print("This is a bug in zavis_bt: please report it with the lines above.", file=sys.stderr)
+            raise typer.Exit(BUG) from None
+
+
+app = typer.Typer(
+    cls=Guarded,
+    help="Search missions as behaviour trees: in simulation, on the robot, compared with each other.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command("demo")(demo.demo)
+app.command("run")(run.run)
+app.command("bench")(bench.bench)
+app.add_typer(tree.app, name="tree")
+app.add_typer(world.app, name="world")
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        print(f"zavis_bt {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version."),
+) -> None:
+    """Read the options that stand before a command."""
+
+
+def main() -> None:
+    """Run the command line."""
+    app(prog_name="zavis")

@@ -1,0 +1,137 @@
+"""Composing a simulated mission: world, robot, perception, prior, person."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from sim.oracle import Oracle
+from sim.perception import SimDetector, SimMatcher
+
+from sim.simulation import Simulation
+from sim.targets import instances_named
+from sim.world import World
+from zavis_bt.errors import InputError, did_you_mean
+from zavis_bt.knowledge import WordVectors, make_prior
+from zavis_bt.mission import (
+    InlineJobs,
+    Mission,
+    MissionSettings,
+    Nobody,
+    Parts,
+    Search,
+    Task,
+    TerminalHuman,
+    ThreadJobs,
+    WithTimeout,
+)
+from zavis_bt.perception import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS
+from zavis_bt.protocols import Human
+from zavis_bt.tree import Registry, load_tree
+from zavis_bt.types import MissionResult, Pose2D, RobotSpec
+
+CONFIRMATIONS = ("oracle", "terminal", "timeout")
+PERCEPTIONS = ("simulated",)
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What a user chooses for a simulated mission, beyond world, start and target."""
+
+    tree: Path
+    robot: RobotSpec
+    method: str
+    prior: str = "commonsense"
+    perception: str = "simulated"
+    confirm: str = "oracle"
+    known: tuple[str, ...] = DEFAULT_KNOWN_LANDMARKS
+    unknown: tuple[str, ...] = DEFAULT_UNKNOWN_LANDMARKS
+    inputs: tuple[tuple[str, Any], ...] = ()
+    """Further inputs of the tree, e.g. ``("order", "nearest")``."""
+    real_time: bool = False
+    settings: MissionSettings = field(default_factory=MissionSettings)
+
+    def __post_init__(self) -> None:
+        """Check the names.
+
+        Raises:
+            InputError: There is no such kind of perception or confirmation.
+        """
+        for option, value, names in (
+            ("--perception", self.perception, PERCEPTIONS),
+            ("--confirm", self.confirm, CONFIRMATIONS),
+        ):
+            if value not in names:
+                raise InputError(f"{option}: '{value}' is unknown{did_you_mean(value, names)}")
+
+
+class SimulatedMission:
+    """A mission in a simulated world, ready to run."""
+
+    def __init__(
+        self,
+        choices: Choices,
+        world: World,
+        start: Pose2D,
+        target: str,
+        task: Task,
+        *,
+        targets: Sequence[str] | None = None,
+        pictures: Path = Path("questions"),
+    ) -> None:
+        """Compose everything; nothing moves yet.
+
+        Args:
+            choices: Tree, robot and models.
+            world: Where.
+            start: The robot's first pose.
+            target: What to find.
+            task: Names for the result; its seed is the run's.
+            targets: Ids of the instances that count as the target; those the text names if not given.
+            pictures: Where questions at the terminal leave their pictures.
+
+        Raises:
+            InputError: Tree, target, start or a name is wrong; nothing has moved.
+        """
+        search = Search(target, choices.known, choices.unknown)
+        tree = load_tree(choices.tree, Registry.from_entry_points(), {"target": target, **dict(choices.inputs)})
+        self.simulation = Simulation(world, choices.robot, start, task.seed, real_time=choices.real_time)
+        clock = self.simulation.clock
+        self._jobs: ThreadJobs | InlineJobs = ThreadJobs() if choices.real_time else InlineJobs(clock)
+        similarity = WordVectors().similarity
+        wanted = instances_named(world, target, similarity) if targets is None else targets
+        parts = Parts(
+            robot=self.simulation.robot,
+            clock=clock,
+            jobs=self._jobs,
+            detector=SimDetector(choices.known, self.simulation.rng("detector")),
+            matcher=SimMatcher(similarity, self.simulation.rng("matcher")),
+            prior=make_prior(choices.prior),
+            human=_human(choices.confirm, Oracle(wanted), self.simulation, pictures),
+            rng=self.simulation.rng("planning"),
+        )
+        self.mission = Mission(tree, parts, search, task, settings=choices.settings)
+
+    def run(self) -> MissionResult:
+        """Run to the end; the result tells the collisions as well.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C; everything is stopped and recorded.
+        """
+        try:
+            result = self.mission.run()
+        finally:
+            self.simulation.robot.close()
+            self._jobs.close()
+        return replace(result, details={**result.details, "collisions": self.simulation.collisions})
+
+
+def _human(confirm: str, oracle: Oracle, simulation: Simulation, pictures: Path) -> Human:
+    match confirm:
+        case "terminal":
+            return TerminalHuman(pictures)
+        case "timeout":
+            return WithTimeout(Nobody(), simulation.clock, 30.0, accept=True)
+    return oracle
