@@ -3,7 +3,7 @@
 from py_trees.common import Status
 
 from zavis_bt.tree.behaviour import Behaviour
-from zavis_bt.tree.inputs import TreeInput
+from zavis_bt.tree.inputs import TreeInput, parse_input
 from zavis_bt.tree.loader import check_tree, load_tree, read_inputs
 from zavis_bt.tree.ports import In, Out, Port
 from zavis_bt.tree.registry import Registry
@@ -23,5 +23,6 @@ __all__ = [
     "TreeInput",
     "check_tree",
     "load_tree",
+    "parse_input",
     "read_inputs",
 ]

@@ -73,6 +73,7 @@ def _check_node(node: NodeSpec, signature: Signature, tree: TreeSpec, library: L
     for name, argument in node.save.items():
         if name not in signature.outputs:
             near = did_you_mean(name, signature.outputs) if signature.outputs else " (it has none)"
+            near = " ('save' stands beside the node that has the output, here inside 'do')" if node.children else near
             faults.add(argument.key, "argument", f"'{node.kind}' has no output '{name}'{near}")
 
 

@@ -201,9 +201,11 @@ class _Flow:
             near = did_you_mean(f"${name}", _dollars(self._symbols))
             self._faults.add(argument.mark, "name", f"unknown variable '${name}'{near or ' (save writes one)'}")
         elif name not in before and not optional:
-            writer = self._symbols[name].mark
-            where = f"it is written in line {writer.line}, which a way to here leaves out"
-            what = f"'${name}' is read before it is written: {where} (write it on every way, or `set` a first value)"
+            symbol = self._symbols[name]
+            what = f"'${name}' is known only inside the loop of line {symbol.mark.line} (save what it finds)"
+            if symbol.role != "item":
+                where = f"a way to here leaves out line {symbol.mark.line}, which writes it"
+                what = f"'${name}' is read before it is written: {where} (or `set` a first value)"
             self._faults.add(argument.mark, "unwritten", what)
 
     def _check_type(self, name: str, port: Port, argument: Argument, symbol: Symbol) -> None:

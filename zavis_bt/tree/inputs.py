@@ -67,6 +67,11 @@ class TreeInput:
         return checked
 
 
+def parse_input(wanted: TreeInput, text: str) -> Any:
+    """Return the value that a command line's ``name=text`` means, see `TreeInput.parse`."""
+    return wanted.parse(text)
+
+
 def _yaml(text: str) -> Any:
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError

@@ -42,7 +42,6 @@ class NodeParser:
     def _bare_word(self, kind: str, mark: Mark, base: str) -> NodeSpec | None:
         if kind not in self._kinds:
             self._unknown(kind, mark)
-            return None
         return self._body(kind, None, mark, f"{base}/{kind}", {})
 
     def _unknown(self, kind: str, mark: Mark) -> None:
@@ -66,7 +65,8 @@ class NodeParser:
                 self._faults.add(table.keys[key], "modifier", f"unknown modifier '{key}' beside '{known[0]}'{near}")
             elif not known:
                 self._unknown(key, table.keys[key])
-        return known[0] if known else None if candidates else self._long_form(table)
+        # A misspelt kind stays a node, so that what it saves is not reported as unknown as well.
+        return (known or candidates)[0] if candidates else self._long_form(table)
 
     def _long_form(self, table: Table) -> str | None:
         """Return the modifier that is the kind here, since it has a block of its own or only compares."""
@@ -86,7 +86,7 @@ class NodeParser:
         own = {key: blocks.pop(key) for key in tuple(blocks) if control and control.slot(key)}
         outer = [key for key in MODIFIERS if key in table.entries and key != kind]
         recover = blocks.pop("recover", None) if "retry" in outer else None
-        for key in blocks:
+        for key in blocks if kind in self._kinds else ():
             needs = "'retry'" if key == "recover" else "a kind with a block, such as 'for_each'"
             self._faults.add(table.keys[key], "modifier", f"'{key}' belongs to {needs}, not to '{kind}'")
         node = self._body(kind, table.entries[kind], table.keys[kind], f"{base}/{kind}", own)
@@ -190,6 +190,8 @@ class NodeParser:
             return {}
         if isinstance(element, Table):
             return {key: self._argument(value, element.keys[key]) for key, value in element.entries.items()}
+        if kind not in self._kinds:
+            return {}
         shorthand = LEAF_SHORTHAND.get(kind)
         if shorthand and isinstance(element, Scalar):
             return {shorthand: self._argument(element, element.mark)}

@@ -17,7 +17,7 @@ from typing import Any, Generic, Never, Protocol, TypeVar, overload
 from py_trees.blackboard import Blackboard
 from py_trees.ports import PortInformation
 
-from zavis_bt.errors import InputError
+from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.tree.datatypes import coercer, describe, type_name
 
 T = TypeVar("T")
@@ -96,7 +96,7 @@ class Port(PortInformation):
     def range_fault(self, value: Any) -> str:
         """Return what is wrong with a value of the right type, or an empty text."""
         if self.choices and value not in self.choices:
-            return f"is {describe(value)} (one of: {', '.join(map(str, self.choices))})"
+            return f"is {describe(value)}{did_you_mean(str(value), map(str, self.choices))}"
         for holds, bound, words in self.bounds:
             if not _holds(holds, value, bound):
                 return f"is {describe(value)}{self.suffix} ({words} {bound:g}{self.suffix})"

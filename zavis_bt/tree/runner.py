@@ -49,7 +49,7 @@ class Runner:
         before: Sequence[Hook] = (),
         after: Sequence[Hook] = (),
         on_exit: Sequence[Hook] = (),
-        on_pause: Sequence[Hook] = (),
+        on_pause: Hook | None = None,
     ) -> None:
         """Prepare a run.
 
@@ -69,7 +69,7 @@ class Runner:
         self._clock = clock
         self._period = 1.0 / rate
         self._before, self._after = tuple(before), tuple(after)
-        self._on_exit, self._on_pause = tuple(on_exit), tuple(on_pause)
+        self._on_exit, self._on_pause = tuple(on_exit), on_pause
         self._paused = threading.Event()
         self._lock = threading.Lock()
         self._stop_reason: str | None = None
@@ -123,16 +123,21 @@ class Runner:
             for hook in self._before:
                 hook()
             self._reload()
-            if self._stop_reason is not None:
-                return Outcome(Status.INVALID, self._stop_reason, "")
-            held = self._turn(held)
-            for hook in self._after:
-                hook()
-            if self.tree.status in (Status.SUCCESS, Status.FAILURE):
-                decider = self.tree.decider()
-                return Outcome(self.tree.status, decider.reason, decider.id)
+            if self._stop_reason is None:
+                held = self._turn(held)
+                for hook in self._after:
+                    hook()
+            if (outcome := self._outcome()) is not None:
+                return outcome
             turn = self._next_turn(start, turn)
             self._clock.wait_until(start + turn * self._period)
+
+    def _outcome(self) -> Outcome | None:
+        """Return how the run has ended, or None if it goes on; the tree's own end counts before a stop."""
+        if self.tree.status in (Status.SUCCESS, Status.FAILURE):
+            decider = self.tree.decider()
+            return Outcome(self.tree.status, decider.reason, decider.id)
+        return None if self._stop_reason is None else Outcome(Status.INVALID, self._stop_reason, "")
 
     def _turn(self, held: bool) -> bool:
         """Tick, or hold; return whether the tree is held."""
@@ -140,9 +145,8 @@ class Runner:
             self.tree.tick()
             self.ticks += 1
             return False
-        if not held:
-            for hook in self._on_pause:
-                hook()
+        if not held and self._on_pause is not None:
+            self._on_pause()
         return True
 
     def _next_turn(self, start: float, turn: int) -> int:

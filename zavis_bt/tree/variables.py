@@ -56,8 +56,8 @@ def _collect(node: NodeSpec, symbols: dict[str, Symbol], tree: TreeSpec, library
     signature = library.signature(node.kind, tree.file)
     for port_name, argument in node.save.items():
         port = signature.outputs.get(port_name) if signature else None
-        if port is not None:
-            _write(str(argument.value), port.data_type, port.unit, argument.mark, symbols, library)
+        type_, unit = (port.data_type, port.unit) if port else (Any, "")  # what is unknown is reported elsewhere
+        _write(str(argument.value), type_, unit, argument.mark, symbols, library)
     if node.kind == SET:
         for name, argument in node.arguments.items():
             _write(name, type_of(argument, symbols), "", argument.key, symbols, library)
