@@ -5,16 +5,18 @@ import signal
 import subprocess
 import sys
 import time
+from io import BytesIO
 
 import numpy as np
 import pytest
 import umsgpack
+from PIL import Image
 from scripted_mission import LANDMARKS, RESULT, ROBOT, ScriptedMission, apartment, finished
 
 from zavis_bt.errors import DeviceError
-from zavis_bt.types import FREE, OCCUPIED, Footprint, GridMap, Path
+from zavis_bt.types import FREE, OCCUPIED, UNKNOWN, Footprint, GridMap, Path
 from zavis_bt.viz import MeshcatViewer
-from zavis_bt.viz.ground import WALL_HEIGHT, walls
+from zavis_bt.viz.ground import WALL_HEIGHT, floor_image, walls
 from zavis_bt.viz.scene import Scene
 from zavis_bt.viz.solids import box, cylinder, merged, ribbon
 
@@ -128,6 +130,13 @@ def test_disc_robots_and_missing_things_can_be_drawn():
     mission.grid = GridMap(np.full((3, 3), -1, dtype=np.int8), 0.05, (0.0, 0.0))
     assert list(Scene().opening(mission.robot, ""))
     assert "/zavis/path#object" not in names(Scene().news(mission, 0.0))
+
+
+def test_floor_image_has_the_cells_north_up_and_nothing_where_unknown():
+    grid = apartment(0.5)
+    image = np.asarray(Image.open(BytesIO(floor_image(grid))).convert("RGBA"))[::-1]
+    np.testing.assert_array_equal(image[..., 3] == 0, grid.states == UNKNOWN)
+    np.testing.assert_array_equal(image[..., 0] < 200, grid.states == OCCUPIED)
 
 
 def test_walls_stand_on_the_occupied_cells():

@@ -37,11 +37,10 @@ def candidate_image(candidate: Candidate, *, accepted: bool = False) -> NDArray[
 
 
 def encode_png(rgb: NDArray[np.uint8]) -> bytes:
-    """Return an (h, w, 3) rgb or (h, w, 4) rgba image as a PNG file."""
+    """Return an (h, w, 3) rgb image as a PNG file."""
     import cv2
 
-    order = cv2.COLOR_RGBA2BGRA if rgb.shape[2] == 4 else cv2.COLOR_RGB2BGR
-    return bytes(cv2.imencode(".png", cv2.cvtColor(rgb, order))[1])
+    return bytes(cv2.imencode(".png", cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR))[1])
 
 
 def write_candidates(folder: Path, candidates: Sequence[Candidate], found: Candidate | None) -> None:

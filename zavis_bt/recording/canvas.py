@@ -19,10 +19,9 @@ _SHIFT = 4  # fractional bits of OpenCV's coordinates
 
 def grid_image(grid: GridMap) -> NDArray[np.uint8]:
     """Return the grid in colours, (rows, cols, 3) rgb, north (the largest y) up."""
-    image = np.empty((*grid.shape, 3), dtype=np.uint8)
-    for state, colour in GRID_COLOURS.items():
-        image[grid.states == state] = colour
-    return image[::-1]
+    palette = np.full((256, 3), GRID_COLOURS[UNKNOWN], dtype=np.uint8)
+    palette[[FREE, OCCUPIED]] = GRID_COLOURS[FREE], GRID_COLOURS[OCCUPIED]
+    return np.asarray(palette[grid.states[::-1].view(np.uint8)])
 
 
 def known_bounds(grid: GridMap, points: FloatArray, margin: float) -> Bounds:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from io import BytesIO
+
 import numpy as np
 from numpy.typing import NDArray
 
-from zavis_bt.recording.candidate_images import encode_png
-from zavis_bt.types import FREE, OCCUPIED, FloatArray, GridMap
+from zavis_bt.types import OCCUPIED, UNKNOWN, FloatArray, GridMap
 from zavis_bt.viz.solids import Colour, Solid, merged, quads
 
 WALL_HEIGHT = 0.25  # high enough to be seen, low enough to look over [m]
@@ -16,10 +17,15 @@ _WALL: Colour = (104, 114, 132)
 
 def floor_image(grid: GridMap) -> bytes:
     """Return a PNG of the free and occupied cells, see-through where unknown, north up."""
-    image = np.full((*grid.shape, 4), (*_FREE, 0), dtype=np.uint8)
-    image[grid.states == FREE] = (*_FREE, 255)
-    image[grid.states == OCCUPIED] = (*_WALL, 255)
-    return encode_png(np.ascontiguousarray(image[::-1]))
+    from PIL import Image
+
+    colours = np.full((256, 3), _FREE, dtype=np.uint8)
+    colours[OCCUPIED] = _WALL
+    image = Image.fromarray(np.ascontiguousarray(grid.states[::-1]).view(np.uint8), "L").convert("P")
+    image.putpalette(colours.tobytes())
+    file = BytesIO()
+    image.save(file, "PNG", transparency=UNKNOWN % 256)
+    return file.getvalue()
 
 
 def walls(grid: GridMap) -> Solid | None:
