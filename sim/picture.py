@@ -58,11 +58,15 @@ def save_picture(world: World, path: Path) -> None:
         InputError: The file cannot be written.
     """
     try:
-        written = cv2.imwrite(str(path), draw(world))
-    except cv2.error as error:
-        raise InputError(f"{path}: not a kind of image that can be written (.png, .jpg)") from error
+        written, data = cv2.imencode(path.suffix, draw(world))
+    except cv2.error:
+        written = False
     if not written:
-        raise InputError(f"{path}: the picture cannot be written")
+        raise InputError(f"{path}: not a kind of image that can be written (.png, .jpg)")
+    try:
+        path.write_bytes(data.tobytes())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def _floor(world: World, zoom: int) -> Image:
