@@ -98,12 +98,12 @@ def _measure(
 ) -> None:
     boxes, hulls, clearance, room = solids
     size = len(bounds.inside)
-    ids, entries, faces = np.empty(size, np.int32), np.empty(size), np.empty(size, np.int32)
+    ids, hits, entries = np.empty(size, np.int32), np.empty((size, 2), np.int32), np.empty(size)
     for i in range(len(pixels)):
         col, row = pixels[i]
         count = _collect(bounds, col, row, col + 1, row + 1, ids)
         ray = _pixel_ray(view, col, row)
-        depth, _, _ = first_hit(boxes, hulls, clearance, room, ray, ids, count, entries, faces)
+        depth, _, _ = first_hit(boxes, hulls, clearance, room, ray, ids, count, hits, entries)
         depths[i] = _reading(depth, depth_range)
 
 
@@ -120,7 +120,7 @@ def _render(
 ) -> None:
     boxes, hulls, clearance, room = solids
     size = len(bounds.inside)
-    ids, entries, faces = np.empty(size, np.int32), np.empty(size), np.empty(size, np.int32)
+    ids, hits, entries = np.empty(size, np.int32), np.empty((size, 2), np.int32), np.empty(size)
     first_col, first_row, end_col, end_row = window
     room_row = 6 * len(boxes)
     for top in range(first_row, end_row, _TILE):
@@ -130,7 +130,7 @@ def _render(
             for row in range(top, bottom):
                 for col in range(left, right):
                     ray = _pixel_ray(view, col, row)
-                    t, surface, face = first_hit(boxes, hulls, clearance, room, ray, ids, count, entries, faces)
+                    t, surface, face = first_hit(boxes, hulls, clearance, room, ray, ids, count, hits, entries)
                     depth[row - first_row, col - first_col] = _reading(t, depth_range)
                     x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
                     shade = _edge_shade(boxes, surface, face, x, y, z) if surface >= 0 else 1.0

@@ -32,6 +32,9 @@ TOP, BOTTOM = 5, 4
 _TINY = 1e-12  # stands for a direction component of zero, so that divisions stay finite
 _TOUCHING = 1e-6  # relative distance below which two surfaces coincide
 
+# Called once a ray: inlined, or counting references to their arrays would take longer than the work.
+_INLINE = {"cache": True, "error_model": "numpy", "inline": "always"}
+
 IntArray = NDArray[np.int32]
 Ray = tuple[float, float, float, float, float, float]
 """Origin and direction, map frame."""
@@ -55,7 +58,7 @@ class Solids(NamedTuple):
     """(4,) outer corner x, y of cell [0, 0], side of a cell, height of the walls [m]."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**_INLINE)
 def box_entry(boxes: FloatArray, box: int, ray: Ray) -> tuple[float, int]:
     """Return where a ray enters a box and through which face; (inf, -1) if it misses or starts inside."""
     cos, sin = boxes[box, COS], boxes[box, SIN]
@@ -81,7 +84,7 @@ def box_entry(boxes: FloatArray, box: int, ray: Ray) -> tuple[float, int]:
     return entry, face
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**_INLINE)
 def wall_entry(clearance: IntArray, room: FloatArray, ray: Ray, limit: float) -> tuple[float, int]:
     """Return where a ray first meets a wall before ``limit``, and the face; (inf, -1) if it does not.
 
@@ -137,17 +140,15 @@ def is_hull(hulls: IntArray, box: int, other: int) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def _seen_through_hulls(
-    hulls: IntArray, ids: IntArray, count: int, entries: FloatArray, faces: IntArray, nearest: int
-) -> int:
-    """Return the place in ``ids`` of the farthest box that no other box hides; ``nearest`` if there is none."""
+def _seen_through_hulls(hulls: IntArray, hits: IntArray, entries: FloatArray, count: int, nearest: int) -> int:
+    """Return the place in ``hits`` of the farthest box that no other box hides; ``nearest`` if there is none."""
     seen = nearest
     for k in range(count):
-        if entries[k] == math.inf or entries[k] <= entries[seen] or faces[k] == BOTTOM:
+        if entries[k] <= entries[seen] or hits[k, 1] == BOTTOM:
             continue
         hidden = False
         for other in range(count):
-            if entries[other] < entries[k] and not is_hull(hulls, ids[k], ids[other]):
+            if entries[other] < entries[k] and not is_hull(hulls, hits[k, 0], hits[other, 0]):
                 hidden = True
                 break
         if not hidden:
@@ -155,7 +156,7 @@ def _seen_through_hulls(
     return seen
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**_INLINE)
 def first_hit(
     boxes: FloatArray,
     hulls: IntArray,
@@ -164,8 +165,8 @@ def first_hit(
     ray: Ray,
     ids: IntArray,
     count: int,
+    hits: IntArray,
     entries: FloatArray,
-    faces: IntArray,
 ) -> tuple[float, int, int]:
     """Return what a ray sees: distance, surface id, face.
 
@@ -177,24 +178,27 @@ def first_hit(
         ray: Origin and direction.
         ids: Its first ``count`` entries are the boxes to consider.
         count: How many.
+        hits: Scratch (at least ``count``, 2).
         entries: Scratch, at least ``count`` long.
-        faces: Scratch, at least ``count`` long.
     """
-    nearest, entry = -1, math.inf
+    nearest, hit_count = -1, 0
     for k in range(count):
-        entries[k], faces[k] = box_entry(boxes, ids[k], ray)
-        if entries[k] < entry:
-            nearest, entry = k, entries[k]
+        entry, face = box_entry(boxes, ids[k], ray)
+        if face >= 0:
+            hits[hit_count, 0], hits[hit_count, 1], entries[hit_count] = ids[k], face, entry
+            if nearest < 0 or entry < entries[nearest]:
+                nearest = hit_count
+            hit_count += 1
     seen = nearest
-    if nearest >= 0 and boxes[ids[nearest], CARRIES] > 0.0:
-        seen = _seen_through_hulls(hulls, ids, count, entries, faces, nearest)
+    if hit_count > 1 and boxes[hits[nearest, 0], CARRIES] > 0.0:
+        seen = _seen_through_hulls(hulls, hits, entries, hit_count, nearest)
     floor = -ray[2] / ray[5] if ray[5] < 0.0 and ray[2] > 0.0 else math.inf
     wall, wall_face = wall_entry(clearance, room, ray, floor if seen < 0 else min(floor, entries[seen]))
     if seen >= 0:
         length = math.sqrt(ray[3] * ray[3] + ray[4] * ray[4] + ray[5] * ray[5])
         for k in (seen, nearest):
-            if entries[k] <= floor and entries[k] - boxes[ids[k], SLACK] / length <= wall:
-                return entries[k], ids[k], faces[k]
+            if entries[k] <= floor and entries[k] - boxes[hits[k, 0], SLACK] / length <= wall:
+                return entries[k], hits[k, 0], hits[k, 1]
     if wall < math.inf:
         return wall, WALL, wall_face
     return (floor, FLOOR, TOP) if floor < math.inf else (math.inf, NOTHING, -1)
@@ -240,7 +244,7 @@ def cast_rays(
     """Fill (n,) distances and surface ids for (n, 3) directions from one origin."""
     boxes, hulls, clearance, room = solids
     count = len(boxes)
-    ids, entries, faces = np.arange(count).astype(np.int32), np.empty(count), np.empty(count, np.int32)
+    ids, hits, entries = np.arange(count).astype(np.int32), np.empty((count, 2), np.int32), np.empty(count)
     for i in range(len(directions)):
         ray = (origin[0], origin[1], origin[2], directions[i, 0], directions[i, 1], directions[i, 2])
-        distances[i], surfaces[i], _ = first_hit(boxes, hulls, clearance, room, ray, ids, count, entries, faces)
+        distances[i], surfaces[i], _ = first_hit(boxes, hulls, clearance, room, ray, ids, count, hits, entries)
