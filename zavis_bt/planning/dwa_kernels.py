@@ -1,0 +1,244 @@
+"""Rolling out and judging motions of a differential drive. Lengths in cells, as in `grid_kernels`."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from zavis_bt.planning.distance_field import DistanceField
+from zavis_bt.planning.grid_kernels import Body, body_fits
+from zavis_bt.types import FloatArray
+
+
+class Rollout(NamedTuple):
+    """How motions are rolled out and judged; lengths in cells."""
+
+    horizon: float
+    """How far ahead [s]."""
+    step: float
+    """Longest time between two checked poses [s]."""
+    deceleration: float
+    """[cells/s²]"""
+    reaction: float
+    """Time in which a command is carried out [s]."""
+    heading_weight: float
+    """[cells/rad] off the target's bearing at the end."""
+    path_weight: float
+    """Cells of distance to the target that a cell off the path is worth."""
+    clearance_weight: float
+    """[cells] where the outline touches an obstacle all the way."""
+    comfort: float
+    """Clearance beyond the outline from which more is not better."""
+    smoothness: float
+    """[cells per rad/s] of change in the turn rate."""
+
+
+@njit(cache=True)
+def best_motion(
+    field: DistanceField,
+    body: Body,
+    rollout: Rollout,
+    pose: tuple[float, float, float],
+    speeds: FloatArray,
+    rates: FloatArray,
+    rate_now: float,
+    target: tuple[float, float],
+    path: FloatArray,
+    obstacles: FloatArray,
+    give: float,
+) -> tuple[int, int]:
+    """Return the indices of the best speed [cells/s] and turn rate [rad/s], or (-1, -1) if none is admissible.
+
+    A motion is admissible if the outline stays free on its arc as far as it takes to brake. It is judged by where it
+    leads within the horizon, or before it would collide: near the target, facing it, near the path, off obstacles.
+
+    Args:
+        field: Distances to mapped obstacles.
+        body: The outline.
+        rollout: Settings.
+        pose: u, v, yaw of the robot.
+        speeds: (n,) to choose from.
+        rates: (m,) to choose from.
+        rate_now: Turn rate at present [rad/s].
+        target: u, v of where to go next.
+        path: (k, 2) u, v of the path from the robot to a little beyond the target.
+        obstacles: (j, 2) u, v of obstacles that are not on the map.
+        give: How deep these may reach into the outline.
+    """
+    best, found = math.inf, (-1, -1)
+    for i in range(len(speeds)):
+        for j in range(len(rates)):
+            score = _judge(field, body, rollout, pose, speeds[i], rates[j], target, path, obstacles, give, best)
+            score += rollout.smoothness * abs(rates[j] - rate_now)
+            if score < best:
+                best, found = score, (i, j)
+    return found
+
+
+@njit(cache=True)
+def _judge(
+    field: DistanceField,
+    body: Body,
+    rollout: Rollout,
+    pose: tuple[float, float, float],
+    speed: float,
+    rate: float,
+    target: tuple[float, float],
+    path: FloatArray,
+    obstacles: FloatArray,
+    give: float,
+    best: float,
+) -> float:
+    """Return the score of one motion, the lower the better; inf if it is not admissible."""
+    u, v, yaw = pose
+    step = min(rollout.step, 1.0 / max(abs(speed), 1e-9))
+    count = math.ceil(rollout.horizon / step)
+    turn, chord = _arc(speed, rate, step)
+    cos, sin = math.cos(yaw + turn / 2), math.sin(yaw + turn / 2)
+    cos_turn, sin_turn = math.cos(turn), math.sin(turn)
+    braking = speed * speed / (2 * rollout.deceleration) + abs(speed) * rollout.reaction
+    if math.hypot(target[0] - u, target[1] - v) - abs(speed) * rollout.horizon > best:
+        return math.inf  # cannot get near enough to the target to be the best
+    lack, done = 0.0, 0
+    moving = speed != 0.0 or not body.disc
+    for k in range(1, count + 1):
+        nu, nv, nyaw = u + chord * cos, v + chord * sin, yaw + turn
+        if moving and not _free(field, body, nu, nv, nyaw, obstacles, give):
+            if (k - 1) * step * abs(speed) < braking or (speed == 0.0 and k <= 3):
+                return math.inf
+            break
+        cos, sin = cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
+        u, v, yaw, done = nu, nv, nyaw, k
+        lack += _lack(field, body, rollout.comfort, u, v)
+    du, dv = target[0] - u, target[1] - v
+    distance = math.hypot(du, dv)
+    off = (math.atan2(dv, du) - yaw) / math.tau if distance > 0.5 else 0.0
+    off = math.tau * abs(off - round(off))
+    score = distance + rollout.heading_weight * off * min(1.0, distance / 6.0)
+    score += rollout.path_weight * _path_distance(path, u, v)
+    return score + rollout.clearance_weight * lack / max(done, 1)
+
+
+@njit(cache=True, inline="always")
+def _arc(speed: float, rate: float, seconds: float) -> tuple[float, float]:
+    """Return the angle and the chord of an arc."""
+    turn = rate * seconds
+    half = turn / 2
+    return turn, speed * seconds * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
+
+
+@njit(cache=True)
+def _lack(field: DistanceField, body: Body, comfort: float, u: float, v: float) -> float:
+    """Return how much clearance is missing to be comfortable, 0 to 1, squared."""
+    rows, cols = field.distance.shape
+    row, col = min(max(round(v), 0), rows - 1), min(max(round(u), 0), cols - 1)
+    missing = 1.0 - (field.distance[row, col] - body.inner) / comfort
+    return min(missing, 1.0) ** 2 if missing > 0.0 else 0.0
+
+
+@njit(cache=True)
+def _free(field: DistanceField, body: Body, u: float, v: float, yaw: float, obstacles: FloatArray, give: float) -> bool:
+    if not body_fits(field, body, u, v, yaw):
+        return False
+    if len(obstacles) == 0:
+        return True
+    reach = (body.outer - give) ** 2
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    for i in range(len(obstacles)):
+        du, dv = obstacles[i, 0] - u, obstacles[i, 1] - v
+        if du * du + dv * dv >= reach:
+            continue
+        if body.disc:
+            return False
+        ahead, aside = cos * du + sin * dv, cos * dv - sin * du
+        if give - body.back < ahead < body.front - give and abs(aside) < body.half_width - give:
+            return False
+    return True
+
+
+@njit(cache=True)
+def motion_fits(
+    field: DistanceField,
+    body: Body,
+    pose: tuple[float, float, float],
+    speed: float,
+    rate: float,
+    seconds: float,
+    obstacles: FloatArray,
+    give: float,
+) -> bool:
+    """Return whether the outline stays free on an arc of constant twist."""
+    u, v, yaw = pose
+    if speed == 0.0 and body.disc:
+        return True
+    count = max(math.ceil(abs(speed) * seconds), math.ceil(abs(rate) * seconds / 0.05), 1)
+    turn, chord = _arc(speed, rate, seconds / count)
+    for _ in range(count):
+        u, v = u + chord * math.cos(yaw + turn / 2), v + chord * math.sin(yaw + turn / 2)
+        yaw += turn
+        if not _free(field, body, u, v, yaw, obstacles, give):
+            return False
+    return True
+
+
+@njit(cache=True)
+def _path_distance(path: FloatArray, u: float, v: float) -> float:
+    """Return the distance from a point to a polyline."""
+    best = math.inf
+    for i in range(len(path) - 1):
+        du, dv = path[i + 1, 0] - path[i, 0], path[i + 1, 1] - path[i, 1]
+        squared = du * du + dv * dv
+        share = ((u - path[i, 0]) * du + (v - path[i, 1]) * dv) / squared if squared > 0.0 else 0.0
+        share = min(max(share, 0.0), 1.0)
+        best = min(best, (path[i, 0] + share * du - u) ** 2 + (path[i, 1] + share * dv - v) ** 2)
+    return math.sqrt(best) if len(path) > 1 else 0.0
+
+
+@njit(cache=True)
+def unmapped(
+    field: DistanceField,
+    body: Body,
+    pose: tuple[float, float, float],
+    sensor: tuple[float, float, float],
+    ranges: FloatArray,
+    angle_min: float,
+    angle_increment: float,
+    range_min: float,
+    reach: float,
+    give: float,
+) -> FloatArray:
+    """Return the (n, 2) u, v of scan points within reach that no obstacle cell of the map explains.
+
+    Points of the same cell count once, points inside of the robot's outline not at all.
+
+    Args:
+        field: Distances to mapped obstacles.
+        body: The outline.
+        pose: u, v, yaw of the robot.
+        sensor: u, v, yaw of the sensor.
+        ranges: (n,) [cells].
+        angle_min: Direction of the first beam [rad].
+        angle_increment: [rad]
+        range_min: Nearer returns are broken [cells].
+        reach: Farther ones do not matter [cells].
+        give: How deep points may reach into the outline.
+    """
+    rows, cols = field.distance.shape
+    points, count = np.empty((64, 2)), 0
+    for i in range(len(ranges)):
+        if not range_min <= ranges[i] <= reach:
+            continue
+        angle = sensor[2] + angle_min + i * angle_increment
+        u, v = sensor[0] + ranges[i] * math.cos(angle), sensor[1] + ranges[i] * math.sin(angle)
+        row, col = round(v), round(u)
+        if not (0 <= row < rows and 0 <= col < cols) or field.distance[row, col] <= 1.5:
+            continue
+        if count > 0 and (points[count - 1, 0] - u) ** 2 + (points[count - 1, 1] - v) ** 2 < 0.5:
+            continue
+        points[count, 0], points[count, 1] = u, v
+        if count < 63 and _free(field, body, pose[0], pose[1], pose[2], points[count : count + 1], give):
+            count += 1
+    return points[:count].copy()
