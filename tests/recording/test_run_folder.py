@@ -1,5 +1,6 @@
 from datetime import datetime
 
+import cv2
 import numpy as np
 import pytest
 from scripted_mission import RESULT, finished
@@ -147,3 +148,15 @@ def test_names_of_new_folders_are_free(tmp_path):
     first.mkdir()
     assert first.name == "2025-03-08_14-05-09"
     assert new_run_folder(tmp_path, stamp).name == "2025-03-08_14-05-09-2"
+
+
+def test_reasons_of_many_lines_take_one_in_tree_and_title(tmp_path):
+    from dataclasses import replace
+
+    mission = finished()
+    mission.nodes = (replace(mission.nodes[0], reason="\nfirst line\nsecond line"), *mission.nodes[1:])
+    recorder = RunRecorder(tmp_path, {"target": "cup"})
+    recorder.on_end(mission, replace(RESULT, success=False, reason="a/b: crash\n" + 99 * "more "))
+    assert recorder.problems == []
+    assert (tmp_path / "tree.txt").read_text().splitlines()[0] == "→ mission (sequence): first line"
+    assert cv2.imread(str(tmp_path / "map.png")).shape[1] < 1500

@@ -53,6 +53,7 @@ def draw_map(
     goals = np.empty((0, 2)) if frontiers is None else np.asarray(frontiers, dtype=np.float64).reshape(-1, 2)
     spots = [*candidates, found] if found is not None else candidates
     places = [(pose.x, pose.y) for pose in visited] + [(spot[0], spot[1]) for spot in spots]
+    places += [(landmark.position[0], landmark.position[1]) for landmark in landmarks]
     bounds = known_bounds(grid, np.vstack((path, goals, np.array(places, dtype=np.float64).reshape(-1, 2))), _MARGIN)
     fit = min(size[0] / (bounds[2] - bounds[0]), size[1] / (bounds[3] - bounds[1]))
     canvas = Canvas(bounds, float(np.clip(fit, _MIN_SCALE, _MAX_SCALE)))

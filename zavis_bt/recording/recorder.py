@@ -17,7 +17,7 @@ from zavis_bt.recording.files import replace_atomically, write_atomically
 from zavis_bt.recording.picture import draw_map
 from zavis_bt.recording.plain import to_json
 from zavis_bt.recording.run_folder import ENDED, FORMAT, RUNNING, RunFolder
-from zavis_bt.recording.tree_text import tree_text
+from zavis_bt.recording.tree_text import first_line, tree_text
 from zavis_bt.recording.versions import versions
 from zavis_bt.types import Event, MissionResult, Observed, Pose2D
 
@@ -168,5 +168,5 @@ class RunRecorder:
 
 
 def _heading(target: str, result: MissionResult) -> str:
-    outcome = "found" if result.success else result.reason
+    outcome = "found" if result.success else f"not found ({first_line(result.reason.split(': ')[-1], 60)})"
     return f"{target or result.id}: {outcome}, {result.path_length:.1f} m, {result.waypoints} viewpoints"

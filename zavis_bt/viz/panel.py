@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from zavis_bt.recording.tree_text import first_line
 from zavis_bt.types import MissionResult, NodeState, Observed
 
 
 def tree_rows(nodes: Sequence[NodeState]) -> list[list[Any]]:
     """Return depth, name, kind, status and reason of each node."""
-    return [[node.depth, node.name, node.kind, node.status.value, node.reason] for node in nodes]
+    return [[node.depth, node.name, node.kind, node.status.value, first_line(node.reason)] for node in nodes]
 
 
 def facts(mission: Observed) -> list[list[str]]:
@@ -36,4 +37,4 @@ def verdict(result: MissionResult) -> dict[str, str]:
     """Return how the mission ended."""
     outcome = "found" if result.success else "not found"
     text = result.reason if result.reason not in ("found", "") else f"after {result.path_length:.1f} m"
-    return {"outcome": outcome, "text": text, "status": "SUCCESS" if result.success else "FAILURE"}
+    return {"outcome": outcome, "text": first_line(text), "status": "SUCCESS" if result.success else "FAILURE"}
