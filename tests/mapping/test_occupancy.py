@@ -239,3 +239,21 @@ def test_a_cell_without_size_is_refused(resolution: float) -> None:
 def test_a_scan_without_beams_is_refused() -> None:
     with pytest.raises(InputError, match="0 beams"):
         OccupancyGrid().integrate(scan_of([]), Pose2D(0.0, 0.0))
+
+
+@pytest.mark.parametrize("pose", [Pose2D(math.nan, 0.0), Pose2D(0.0, math.inf), Pose2D(5000.0, 0.0)])
+def test_a_pose_that_cannot_be_leaves_the_map_as_it_was(pose: Pose2D) -> None:
+    grid = OccupancyGrid(CELL)
+    grid.integrate(scan_of([1.0] * 181), Pose2D(0.0, 0.0))
+    before = grid.map
+    with pytest.raises(InputError, match=r"finite pose|too large"):
+        grid.integrate(scan_of([1.0] * 181), pose)
+    assert grid.map is before
+
+
+def test_a_lost_beam_among_others_opens_nothing() -> None:
+    ranges = [1.0] * 181
+    ranges[90] = math.inf
+    grid = OccupancyGrid(CELL)
+    grid.integrate(scan_of(ranges), Pose2D(0.0, 0.0))
+    assert grid.map.state_at(3.0, 0.01) == UNKNOWN

@@ -7,8 +7,8 @@ from zavis_bt.mapping.line_of_sight import clear_line, visible_from
 from zavis_bt.mapping.map_server import load_map, save_map
 from zavis_bt.mapping.mapper import Mapper, MapperSettings
 from zavis_bt.mapping.occupancy import OccupancyGrid
-from zavis_bt.mapping.scan_update import SensorModel
 from zavis_bt.mapping.semantic import SemanticMap
+from zavis_bt.mapping.sensor_model import SensorModel
 
 __all__ = [
     "AssociationSettings",

@@ -9,11 +9,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from zavis_bt.errors import InputError
-from zavis_bt.mapping.scan_update import LogOddsArray, SensorModel, update
+from zavis_bt.mapping.scan_misses import LogOddsArray
+from zavis_bt.mapping.scan_update import update
+from zavis_bt.mapping.sensor_model import SensorModel
 from zavis_bt.mapping.visible_area import Beams, trace
 from zavis_bt.types import FREE, OCCUPIED, UNKNOWN, GridMap, LaserScan, Pose2D
 
 _CHUNK = 64  # the grid grows by multiples of this many cells
+_MAX_SIDE = 20_000  # cells, 1 km of 5 cm: a place further away than that is a fault of the localisation
 _MARGIN = 3  # cells kept between what a scan touches and the border
 _FREE_BELOW, _OCCUPIED_ABOVE = -0.2, 0.25  # log-odds; between them a cell is in dispute, so unknown
 _UNKNOWN, _FREE, _OCCUPIED = np.int8(UNKNOWN), np.int8(FREE), np.int8(OCCUPIED)
@@ -66,12 +69,15 @@ class OccupancyGrid:
             sensor: The sensor in the map at the time of the scan.
 
         Raises:
-            InputError: The scan has no beams, or no range ends its beams.
+            InputError: The scan has no beams, no range ends its beams, its pose is not finite or lies so far from the
+                rest of the map that there is no room for both.
         """
         limit = min(scan.range_max, self._max_range)
         ranges = np.ascontiguousarray(scan.ranges, dtype=np.float64)
         if not (len(ranges) and math.isfinite(limit)):
             raise InputError(f"scan: {len(ranges)} beams up to {limit} m (at least one, and a finite range_max)")
+        if not math.isfinite(sensor.x + sensor.y + sensor.yaw):
+            raise InputError(f"scan: taken from {sensor} (a finite pose)")
         step = float(scan.angle_increment) or 1e-9
         beams = trace(ranges, sensor.yaw + scan.angle_min, step, scan.range_min, limit, self._no_return_is_free)
         x, y = self._to_cells(sensor.x, sensor.y)
@@ -130,21 +136,24 @@ class OccupancyGrid:
 
     def _include(self, first_row: int, end_row: int, first_col: int, end_col: int) -> None:
         """Make room for these cells, counted from the anchor, and note that they may change."""
-        if self._dirty is None:
-            self._dirty = first_row, end_row, first_col, end_col
-        else:
-            r0, r1, c0, c1 = self._dirty
-            self._dirty = min(r0, first_row), max(r1, end_row), min(c0, first_col), max(c1, end_col)
         rows, cols = self._log_odds.shape
         row, col = self._first
         if first_row < row or first_col < col or end_row > row + rows or end_col > col + cols:
             self._grow(first_row, end_row, first_col, end_col)
+        if self._dirty is not None:
+            r0, r1, c0, c1 = self._dirty
+            first_row, end_row = min(r0, first_row), max(r1, end_row)
+            first_col, end_col = min(c0, first_col), max(c1, end_col)
+        self._dirty = first_row, end_row, first_col, end_col
 
     def _grow(self, first_row: int, end_row: int, first_col: int, end_col: int) -> None:
         old, (row, col) = self._log_odds, self._first
         if old.size:
             first_row, end_row = min(first_row, row), max(end_row, row + old.shape[0])
             first_col, end_col = min(first_col, col), max(end_col, col + old.shape[1])
+        if max(end_row - first_row, end_col - first_col) > _MAX_SIDE:
+            size = f"{(end_col - first_col) * self._resolution:.0f} × {(end_row - first_row) * self._resolution:.0f} m"
+            raise InputError(f"map: {size} are too large (up to {_MAX_SIDE * self._resolution:.0f} m a side)")
         self._first = first_row // _CHUNK * _CHUNK, first_col // _CHUNK * _CHUNK
         rows = -(-(end_row - self._first[0]) // _CHUNK) * _CHUNK
         cols = -(-(end_col - self._first[1]) // _CHUNK) * _CHUNK
@@ -159,13 +168,10 @@ class OccupancyGrid:
             self._anchor[1] + self._first[0] * self._resolution,
         )
         same_frame = self._map.shape == self._log_odds.shape and self._map.origin == origin
-        states = self._map.states if same_frame else self._known_states(origin)
-        r0, r1 = dirty[0] - self._first[0], dirty[1] - self._first[0]
-        c0, c1 = dirty[2] - self._first[1], dirty[3] - self._first[1]
-        window = _classify(self._log_odds[r0:r1, c0:c1], _FREE_BELOW, _OCCUPIED_ABOVE)
-        if not np.array_equal(window, states[r0:r1, c0:c1]):
-            states = states.copy() if same_frame else states
-            states[r0:r1, c0:c1] = window
+        states = self._map.states.copy() if same_frame else self._known_states(origin)
+        rows = dirty[0] - self._first[0], dirty[1] - self._first[0]
+        cols = dirty[2] - self._first[1], dirty[3] - self._first[1]
+        if _classify(self._log_odds, rows, cols, _FREE_BELOW, _OCCUPIED_ABOVE, states):
             self._map = GridMap(_frozen(states), self._resolution, origin, self._map.version + 1)
 
     def _known_states(self, origin: tuple[float, float]) -> NDArray[np.int8]:
@@ -201,13 +207,25 @@ def _bounds(x: float, y: float, beams: Beams, cell: float) -> tuple[int, int, in
 
 
 @njit(cache=True)
-def _classify(log_odds: LogOddsArray, free_below: float, occupied_above: float) -> NDArray[np.int8]:
-    """Return the states of the cells."""
-    states = np.empty(log_odds.shape, dtype=np.int8)
+def _classify(
+    log_odds: LogOddsArray,
+    rows: tuple[int, int],
+    cols: tuple[int, int],
+    free_below: float,
+    occupied_above: float,
+    states: NDArray[np.int8],
+) -> bool:
+    """Bring the states of the cells in [first, end) up to date and return whether any of them changed."""
     low, high = np.float32(free_below), np.float32(occupied_above)
-    for row in range(log_odds.shape[0]):
-        for col in range(log_odds.shape[1]):
-            value = log_odds[row, col]
+    changed = False
+    for row in range(rows[0], rows[1]):
+        values, old = log_odds[row, cols[0] : cols[1]], states[row, cols[0] : cols[1]]
+        changes = np.int8(0)
+        for i in range(len(values)):
+            value = values[i]
             state = _FREE if value < low else _UNKNOWN
-            states[row, col] = _OCCUPIED if value > high else state
-    return states
+            state = _OCCUPIED if value > high else state
+            changes |= state ^ old[i]
+            old[i] = state
+        changed |= changes != 0
+    return changed
