@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.tree.arguments import value_fault
 from zavis_bt.tree.condition import parse_condition
 from zavis_bt.tree.controls import SET
+from zavis_bt.tree.document import Element, Items, Scalar, Table
 from zavis_bt.tree.faults import Faults
 from zavis_bt.tree.library import Library
 from zavis_bt.tree.nodes import NAME
@@ -104,10 +105,27 @@ def _check_argument(
         faults.add(
             argument.mark, "reference", f"'{argument.element.plain}' is no variable (write $$ for a dollar sign)"
         )
+    elif (inner := _reference_inside(argument.element)) is not None:
+        faults.add(inner.mark, "reference", f"'{inner.value}' stands inside a value (only a whole argument can)")
     else:
         _, found = value_fault(port, name, argument.element, argument.value)
         if found:
             faults.add(*found)
+
+
+def _reference_inside(element: Element) -> Scalar | None:
+    """Return the first text in a list or mapping that looks like a variable."""
+    parts: Iterable[Element] = ()
+    if isinstance(element, Items):
+        parts = element.items
+    elif isinstance(element, Table):
+        parts = element.entries.values()
+    for part in parts:
+        if isinstance(part, Scalar) and str(part.value).startswith("$"):
+            return part
+        if (inner := _reference_inside(part)) is not None:
+            return inner
+    return None
 
 
 def _looks_like_reference(argument: Argument) -> bool:

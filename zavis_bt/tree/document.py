@@ -18,6 +18,9 @@ from zavis_bt.tree.faults import Faults, Mark
 MAX_DEPTH = 60
 """Nesting that no person writes; deeper files would exhaust Python's stack."""
 
+TEXT_TAGS = ("str", "timestamp", "value", "merge")
+"""What YAML calls values that are texts here."""
+
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
@@ -155,10 +158,10 @@ class _Reader:
         return str(node.value)
 
     def _scalar(self, node: ScalarNode, mark: Mark) -> str | int | float | bool | None:
-        kind = str(node.tag or "").rpartition(":")[2]
+        kind = str(node.tag or TEXT_TAGS[0]).removeprefix("tag:yaml.org,2002:")
         if kind not in ("int", "float", "bool", "null"):
-            if kind.startswith("!"):
-                self._faults.add(mark, "syntax", f"tag '{kind}' means nothing here")
+            if kind not in TEXT_TAGS:
+                self._faults.add(mark, "syntax", f"the tag '{kind}' means nothing here (leave it out)")
             return str(node.value)
         try:
             value = self._constructor.construct_object(node)

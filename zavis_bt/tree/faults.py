@@ -50,5 +50,7 @@ class Faults:
         Raises:
             TreeError: There is at least one.
         """
-        if self.found:
-            raise TreeError("\n".join(map(str, dict.fromkeys(sorted(self.found)))))
+        unread = {fault.mark for fault in self.found if fault.code == "syntax"}
+        found = [fault for fault in self.found if fault.code == "syntax" or fault.mark not in unread]
+        if found:
+            raise TreeError("\n".join(map(str, dict.fromkeys(sorted(found)))))

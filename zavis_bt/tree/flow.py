@@ -88,7 +88,10 @@ class _Flow:
         return self._leaf(node, before)
 
     def _leaf(self, node: NodeSpec, before: Names) -> Ends:
+        signature = self._library.signature(node.kind, self._tree.file)
+        outputs = signature.outputs if signature else {}
         written = {str(argument.value): argument for argument in node.save.values()}
+        self._read.update(str(argument.value) for port, argument in node.save.items() if port not in outputs)
         if node.kind == SET:
             written = dict(node.arguments)
         for name, argument in written.items():

@@ -132,7 +132,7 @@ def _checked(declared: Declared, given: Any, faults: Faults) -> Any:
         value, found = value_fault(declared.port, declared.name, _element(given, declared.mark), given)
         if found:
             faults.add(declared.mark, "input", found[2])
-        return value
+        return UNSET if found else value
     except ValueError as error:
         faults.add(declared.mark, "input", f"'{declared.name}' {error}")
         return UNSET

@@ -200,7 +200,6 @@ class NodeParser:
         return {}
 
     def _argument(self, element: Element, key: Mark) -> Argument:
-        self._no_references_inside(element)
         return Argument(self._value(element), element, key)
 
     def _value(self, element: Element) -> Any:
@@ -213,13 +212,3 @@ class NodeParser:
             return Reference(value[1:])
         # A comparison begins with $ as well; whoever takes the text says what is wrong with it.
         return value
-
-    def _no_references_inside(self, element: Element) -> None:
-        parts = element.items if isinstance(element, Items) else ()
-        parts = tuple(element.entries.values()) if isinstance(element, Table) else parts
-        for part in parts:
-            if isinstance(part, Scalar) and isinstance(part.value, str) and part.value.startswith("$"):
-                self._faults.add(
-                    part.mark, "reference", f"'{part.value}' stands inside a value (only a whole argument can)"
-                )
-            self._no_references_inside(part)
