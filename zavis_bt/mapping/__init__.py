@@ -8,6 +8,7 @@ from zavis_bt.mapping.map_server import load_map, save_map
 from zavis_bt.mapping.mapper import Mapper, MapperSettings
 from zavis_bt.mapping.occupancy import OccupancyGrid
 from zavis_bt.mapping.semantic import SemanticMap
+from zavis_bt.mapping.semantic_file import decode_landmarks, encode_landmarks
 from zavis_bt.mapping.sensor_model import SensorModel
 
 __all__ = [
@@ -20,6 +21,8 @@ __all__ = [
     "SemanticMap",
     "SensorModel",
     "clear_line",
+    "decode_landmarks",
+    "encode_landmarks",
     "find_frontiers",
     "frontier_goal",
     "load_map",
