@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import pytest
@@ -35,8 +36,10 @@ def test_comparisons_mean_what_they_say(text: str, holds: bool) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "$x = 3", "__import__('os')", "$x.real > 3", "$x[0] == 1", "open('f')", "lambda: 1", "x > 3", "$x + 1 > 2"]
-    + ["[i for i in $x]", "len($x, $y) > 1", "$x > 3; $y", "f'{1}' == $x", "-$x < 1", "$x is 3", "variable"],
+    [
+        *("", "$x = 3", "__import__('os')", "$x.real > 3", "$x[0] == 1", "open('f')", "lambda: 1", "x > 3", "$x is 3"),
+        *("[i for i in $x]", "len($x, $y) > 1", "$x > 3; $y", "f'{1}' == $x", "-$x < 1", "$x + 1 > 2", "variable"),
+    ],
 )
 def test_anything_else_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="is no comparison"):
@@ -45,11 +48,8 @@ def test_anything_else_is_refused(text: str) -> None:
 
 @given(st.text(alphabet="$xy0 <>=!()[]'\".,+-*/andort", max_size=20))
 def test_no_text_does_more_than_being_refused(text: str) -> None:
-    try:
-        condition = parse_condition(text)
-    except InputError:
-        return
-    assert set(condition.names) <= set(text.replace("$", " ").replace("(", " ").split()) or condition.names
+    with contextlib.suppress(InputError, TypeError):  # the latter where what is compared has no order
+        parse_condition(text).compile()(lambda name: {"x": 1, "y": "a"}.get(name))
 
 
 def test_names_are_told_once() -> None:

@@ -105,6 +105,7 @@ def test_an_optional_input_may_read_what_is_not_written_yet(tmp_path: Path) -> N
 
 
 def test_what_flows_through_calls_is_checked_by_type(tmp_path: Path) -> None:
-    text = "bt: 1\nroot: m\ntrees:\n  m: {params: {w: str}, do: {n: {v: $w}}}\n  n: {in: {v: float}, do: {consume: {value: $v}}}\n"
+    inner = "{in: {v: float}, do: {consume: {value: $v}}}"
+    text = f"bt: 1\nroot: m\ntrees:\n  m: {{params: {{w: str}}, do: {{n: {{v: $w}}}}}}\n  n: {inner}\n"
     with pytest.raises(TreeError, match=r"4:37: error\[type\]: 'v' takes float, but \$w is str"):
         check_tree(write(tmp_path, text), REGISTRY)
