@@ -5,7 +5,7 @@ from scripted_mission import LANDMARKS, apartment, drive, finished
 from zavis_bt.recording import draw_map
 from zavis_bt.recording.canvas import GRID_COLOURS, Canvas, known_bounds
 from zavis_bt.recording.labels import Label, place
-from zavis_bt.recording.marks import CANDIDATE, FOUND, START, VIEWPOINT, landmark_colour, time_colours
+from zavis_bt.recording.marks import CANDIDATE, FOUND, START, VIEWPOINT, draw_visited, landmark_colour, time_colours
 from zavis_bt.types import FREE, OCCUPIED, UNKNOWN, GridMap, Landmark, Pose2D
 
 
@@ -55,7 +55,7 @@ def test_everything_given_is_drawn():
         assert contains(picture, colour)
 
 
-@pytest.mark.parametrize("shape", [(1, 1), (3, 400), (2, 2)])
+@pytest.mark.parametrize("shape", [(0, 0), (1, 1), (3, 400), (2, 2)])
 def test_empty_and_odd_maps_can_be_drawn(shape):
     picture = draw_map(GridMap(np.full(shape, UNKNOWN, dtype=np.int8), 0.05, (0.0, 0.0)))
     assert contains(picture, GRID_COLOURS[UNKNOWN])
@@ -102,3 +102,9 @@ def test_colours_of_time_run_from_blue_to_orange():
     early, late = time_colours(20)[[0, -1]]
     assert early[2] > early[0]
     assert late[0] > late[2]
+
+
+def test_viewpoints_at_one_place_share_a_disc_and_all_numbers_are_there():
+    canvas = Canvas((0.0, 0.0, 4.0, 4.0), 100.0)
+    marks = draw_visited(canvas, [Pose2D(1.0, 1.0, yaw) for yaw in (0.0, 1.0, 2.0)] + [Pose2D(3.0, 3.0)])
+    assert [(mark.number, mark.label and mark.label.text) for mark in marks] == [("1", "2, 3"), ("4", None)]

@@ -122,6 +122,12 @@ def test_transform_puts_the_robot_where_it_is():
     np.testing.assert_allclose(matrix[:2, 0], [np.cos(pose.yaw), np.sin(pose.yaw)])
 
 
+@pytest.mark.parametrize("shape", [(0, 0), (3, 3)])
+def test_a_mission_that_knows_nothing_yet_can_be_shown(shape):
+    mission = ScriptedMission(grid=GridMap(np.full(shape, UNKNOWN, dtype=np.int8), 0.05, (0.0, 0.0)))
+    assert "/zavis/map/walls#object" not in names(Scene().news(mission, 0.0))
+
+
 def test_disc_robots_and_missing_things_can_be_drawn():
     from dataclasses import replace
 

@@ -31,7 +31,9 @@ def known_bounds(grid: GridMap, points: FloatArray, margin: float) -> Bounds:
     corners = grid.to_points(np.array([cells.min(axis=0), cells.max(axis=0)])) if len(cells) else np.empty((0, 2))
     shown = np.vstack((corners, points))
     if not len(shown):
-        shown = grid.to_points(np.array([[0, 0], [grid.shape[0] - 1, grid.shape[1] - 1]]))
+        shown = np.array([grid.origin, grid.origin]) + [[0, 0], [grid.shape[1], grid.shape[0]]] * np.array(
+            grid.resolution
+        )
     (x0, y0), (x1, y1) = shown.min(axis=0) - margin, shown.max(axis=0) + margin
     return float(x0), float(y0), float(x1), float(y1)
 
@@ -62,6 +64,8 @@ class Canvas:
         """Paint the grid's cells."""
         import cv2
 
+        if grid.states.size == 0:
+            return
         top_left = self.to_pixels(np.array([[grid.origin[0], grid.origin[1] + grid.shape[0] * grid.resolution]]))[0]
         factor = grid.resolution * self.scale * _SUPERSAMPLING
         u, v = top_left * _SUPERSAMPLING

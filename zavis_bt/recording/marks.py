@@ -21,6 +21,7 @@ CERTAIN, UNCERTAIN = (14, 138, 122), (236, 128, 24)
 VIEWPOINT, CANDIDATE, FRONTIER = (43, 58, 103), (146, 72, 196), (196, 148, 30)
 START, FOUND, FOUND_EDGE = (34, 160, 84), (255, 199, 26), (168, 40, 20)
 WHITE: Colour = (255, 255, 255)
+_SAME_PLACE = 18.0  # discs closer than this would hide each other [px]
 KINDS = ("start", "trajectory", "landmark", "viewpoint", "frontier", "candidate", "found")
 
 
@@ -102,15 +103,26 @@ def draw_start(canvas: Canvas, start: Pose2D | None) -> list[Mark]:
 
 def draw_visited(canvas: Canvas, poses: Sequence[Pose2D]) -> list[Mark]:
     """Draw numbered discs with an arrow to where the robot looked."""
-    drawn = []
+    places: list[tuple[FloatArray, list[int]]] = []
     for number, pose in enumerate(poses, start=1):
         centre = canvas.to_pixels(np.array([[pose.x, pose.y]]))[0]
         ahead = np.array([math.cos(pose.yaw), -math.sin(pose.yaw)])
-        canvas.disc(centre, 12.5, WHITE)
         canvas.polygon(arrow_head(centre + 25 * ahead, pose.yaw, 20.0), VIEWPOINT, WHITE, 1.5)
-        canvas.disc(centre, 11.0, VIEWPOINT)
-        drawn.append(Mark("viewpoint", (centre[0], centre[1]), 14.0, number=str(number)))
-    return drawn
+        here = next((numbers for place, numbers in places if np.hypot(*(place - centre)) < _SAME_PLACE), None)
+        if here is None:
+            places.append((centre, [number]))
+        else:
+            here.append(number)
+    return [_numbered(canvas, (centre[0], centre[1]), numbers) for centre, numbers in places]
+
+
+def _numbered(canvas: Canvas, centre: tuple[float, float], numbers: Sequence[int]) -> Mark:
+    """Draw the disc of a place; where the robot was there again, a label has the later numbers."""
+    canvas.disc(np.array(centre), 12.5, WHITE)
+    canvas.disc(np.array(centre), 11.0, VIEWPOINT)
+    later = ", ".join(str(number) for number in numbers[1:])
+    label = Label(later, centre, 14.0, colour=WHITE, plate=VIEWPOINT, size=13) if later else None
+    return Mark("viewpoint", centre, 14.0, label, str(numbers[0]))
 
 
 def draw_candidates(canvas: Canvas, positions: Sequence[Sequence[float]]) -> list[Mark]:

@@ -82,7 +82,7 @@ class Scene:
 
     def _ground(self, mission: Observed) -> Iterator[Message]:
         grid = mission.grid
-        if self._drawn.get("grid") == (grid.version, grid.shape, grid.origin):
+        if grid.states.size == 0 or self._drawn.get("grid") == (grid.version, grid.shape, grid.origin):
             return
         self._drawn["grid"] = (grid.version, grid.shape, grid.origin)
         high = (grid.origin[0] + grid.shape[1] * grid.resolution, grid.origin[1] + grid.shape[0] * grid.resolution)
