@@ -48,7 +48,7 @@ class Page:
         width, height = self._size
         self._call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self._call("Page.enable")
-        self._call("Page.navigate", url=self._url)
+        self.load()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -59,6 +59,12 @@ class Page:
         self._loop.close()
         self._log.close()
         self._folder.cleanup()
+
+    def load(self) -> None:
+        """Load the page, again if it is there already, and wait until it is."""
+        self._call("Page.navigate", url="about:blank")
+        self._call("Page.navigate", url=self._url)
+        self.wait_for("document.readyState == 'complete'")
 
     def evaluate(self, script: str) -> object:
         """Return the value of a JavaScript expression."""

@@ -102,8 +102,7 @@ def test_camera_is_left_where_the_user_puts_it(shown):
 
 def test_page_that_comes_late_sees_all_and_the_end_reaches_it_before_the_server_goes(shown):
     view, page = shown
-    page.evaluate("setTimeout(() => location.reload()); 0")
-    page.wait_for("performance.getEntriesByType('navigation')[0].type == 'reload'")
+    page.load()
     page.wait_for("document.querySelectorAll('.node').length == 10")
     view.on_end(finished(), RESULT)
     view.close()

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -92,6 +93,14 @@ def test_visited_viewpoints_keep_their_numbers():
     assert changed == {"1"}
 
 
+def test_names_of_landmarks_close_together_stand_at_different_heights():
+    scene, mission = Scene(), ScriptedMission()
+    mission.landmarks = tuple(replace(LANDMARKS[0], id=number) for number in range(3))
+    messages = {message.name: umsgpack.unpackb(message.payload) for message in scene.news(mission, 0.0)}
+    heights = [messages[f"/zavis/landmarks/{i}/name#object"]["object"]["object"]["matrix"][14] for i in range(3)]
+    assert np.diff(heights) == pytest.approx(0.3)
+
+
 def test_map_is_drawn_at_most_twice_a_second():
     scene, mission = Scene(), ScriptedMission()
     sent = 0
@@ -129,8 +138,6 @@ def test_a_mission_that_knows_nothing_yet_can_be_shown(shape):
 
 
 def test_disc_robots_and_missing_things_can_be_drawn():
-    from dataclasses import replace
-
     mission = ScriptedMission()
     mission.robot = replace(ROBOT, footprint=Footprint(0.4, 0.4, disc=True))
     mission.grid = GridMap(np.full((3, 3), -1, dtype=np.int8), 0.05, (0.0, 0.0))

@@ -31,9 +31,8 @@ def known_bounds(grid: GridMap, points: FloatArray, margin: float) -> Bounds:
     corners = grid.to_points(np.array([cells.min(axis=0), cells.max(axis=0)])) if len(cells) else np.empty((0, 2))
     shown = np.vstack((corners, points))
     if not len(shown):
-        shown = np.array([grid.origin, grid.origin]) + [[0, 0], [grid.shape[1], grid.shape[0]]] * np.array(
-            grid.resolution
-        )
+        x, y = grid.origin
+        shown = np.array([[x, y], [x + grid.shape[1] * grid.resolution, y + grid.shape[0] * grid.resolution]])
     (x0, y0), (x1, y1) = shown.min(axis=0) - margin, shown.max(axis=0) + margin
     return float(x0), float(y0), float(x1), float(y1)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -20,6 +21,7 @@ _HIT: Colour = (226, 52, 52)
 _BEAM: Colour = (90, 160, 255)
 _DONE: Colour = (140, 148, 162)
 _TEXT, _BADGE = 0.019, 0.021  # heights of texts as a share of the distance to the viewer
+_CLOSE = 0.9  # landmarks nearer to each other than this would hide each other's names [m]
 _MOST_POINTS = 600  # of the drawn trajectory
 
 
@@ -58,23 +60,11 @@ def scan(latest: LaserScan | None) -> dict[str, shapes.Json | None]:
     }
 
 
-def landmark(mark: Landmark) -> Piece:
-    """Return how to draw a landmark: a disc of its extent, a pole, its name and entropy [nat]."""
-
-    def draw() -> dict[str, shapes.Json | None]:
-        (x, y, z), colour = mark.position, landmark_colour(mark)
-        top = max(z, 0.3) + 0.3
-        radius = max(mark.radius, 0.08)
-        rim = disc((x, y, 0.262), radius, colour, inner=max(radius - 0.05, 0.0))
-        pole = cylinder((x, y, 0.0), 0.02, top, colour, sides=8)
-        name = plate(mark.label, f"{mark.entropy:.2f}", _darker(colour))
-        return {
-            "area": shapes.mesh(disc((x, y, 0.26), radius, colour), opacity=0.3),
-            "solid": shapes.mesh(merged([rim, pole])),
-            "name": shapes.sprite(name.png, (x, y, top + 0.1), name.aspect, _TEXT),
-        }
-
-    return draw
+def landmarks(marks: Sequence[Landmark]) -> Iterator[tuple[str, object, Piece]]:
+    """Yield discs of the landmarks' extents with poles that bear their names, the higher the more stand close by."""
+    for number, mark in enumerate(marks):
+        close = sum(math.dist(mark.position[:2], other.position[:2]) < _CLOSE for other in marks[:number])
+        yield str(mark.id), (mark, close), _landmark(mark, 0.3 * min(close, 5))
 
 
 def viewpoints(visited: Sequence[Viewpoint], ahead: Sequence[Viewpoint]) -> Iterator[tuple[str, object, Piece]]:
@@ -134,3 +124,20 @@ def _pillar(found: Candidate) -> Piece:
 
 def _darker(colour: Colour) -> Colour:
     return (round(0.6 * colour[0]), round(0.6 * colour[1]), round(0.6 * colour[2]))
+
+
+def _landmark(mark: Landmark, lift: float) -> Piece:
+    def draw() -> dict[str, shapes.Json | None]:
+        (x, y, z), colour = mark.position, landmark_colour(mark)
+        top = max(z, 0.3) + 0.3 + lift
+        radius = max(mark.radius, 0.08)
+        rim = disc((x, y, 0.262), radius, colour, inner=max(radius - 0.05, 0.0))
+        pole = cylinder((x, y, 0.0), 0.02, top, colour, sides=8)
+        name = plate(mark.label, f"{mark.entropy:.2f}", _darker(colour))
+        return {
+            "area": shapes.mesh(disc((x, y, 0.26), radius, colour), opacity=0.3),
+            "solid": shapes.mesh(merged([rim, pole])),
+            "name": shapes.sprite(name.png, (x, y, top + 0.1), name.aspect, _TEXT),
+        }
+
+    return draw

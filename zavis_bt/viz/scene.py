@@ -66,7 +66,7 @@ class Scene:
         yield from self._scan(mission)
         path = mission.path
         yield from self._changed("path", path, lambda: None if path is None else pieces.path(path))
-        yield from self._group("landmarks", ((str(m.id), m, pieces.landmark(m)) for m in mission.landmarks))
+        yield from self._group("landmarks", pieces.landmarks(mission.landmarks))
         yield from self._group("viewpoints", pieces.viewpoints(mission.visited, mission.viewpoints))
         yield from self._group("candidates", pieces.candidates(mission.candidates, mission.found))
         nodes = mission.nodes
