@@ -95,11 +95,22 @@ def _strict(type_: Any) -> Any:
     if typing.get_origin(type_) in (list, tuple):
         return typing.get_origin(type_)[tuple(p if p is ... else _strict(p) for p in typing.get_args(type_))]
     if dataclasses.is_dataclass(type_) and inspect.isclass(type_):
-        names = [field.name for field in dataclasses.fields(type_)]
-        return Annotated[type_, BeforeValidator(lambda value: _by_name(value, names))]
+        return Annotated[type_, BeforeValidator(lambda value: _by_name(value, type_))]
     return type_
 
 
-def _by_name(value: Any, names: list[str]) -> Any:
-    """Return ``[1, 2, 0.5]`` as ``{x: 1, y: 2, yaw: 0.5}``; anything else as it is."""
-    return dict(zip(names, value, strict=False)) if isinstance(value, list) and len(value) <= len(names) else value
+def _by_name(value: Any, type_: Any) -> Any:
+    """Return ``[1, 2, 0.5]`` as ``{x: 1, y: 2, yaw: 0.5}``, inside dataclasses too; anything else as it is."""
+    if not (inspect.isclass(type_) and dataclasses.is_dataclass(type_) and isinstance(value, list | dict)):
+        return value
+    types = {field.name: _hints(type_)[field.name] for field in dataclasses.fields(type_)}
+    if isinstance(value, list):
+        if len(value) > len(types):
+            return value
+        value = dict(zip(types, value, strict=False))
+    return {name: _by_name(part, types.get(name)) for name, part in value.items()}
+
+
+@lru_cache(maxsize=128)
+def _hints(type_: Any) -> dict[str, Any]:
+    return typing.get_type_hints(type_)

@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 import py_trees
-from py_trees.common import ParallelPolicy
 
 from zavis_bt.tree.arguments import value_fault
+from zavis_bt.tree.assembly import Parts, assemble
 from zavis_bt.tree.behaviour import Behaviour
-from zavis_bt.tree.composites import ForEach, Guard, ReactiveSelector, Recovery
-from zavis_bt.tree.condition import parse_condition
 from zavis_bt.tree.controls import CONTROLS, SET
-from zavis_bt.tree.decorators import Assign, Call, Condition, Repeat, Retry, Timeout, When
+from zavis_bt.tree.decorators import Assign, Call
 from zavis_bt.tree.faults import Mark
 from zavis_bt.tree.library import Library
 from zavis_bt.tree.ports import Port
@@ -204,55 +202,17 @@ class _Instance:
             value = binding.value if isinstance(binding, Constant) else port.default_value
             given[key] = 1 if value is UNSET else value
         slots = {slot: [self.node(child, depth + 1) for child in nodes] for slot, nodes in spec.children.items()}
-        do = slots.get("do", [])
-        match spec.kind:
-            case "sequence" | "reactive_sequence":
-                return py_trees.composites.Sequence(name, memory=spec.kind == "sequence", children=do)
-            case "selector":
-                return py_trees.composites.Selector(name, memory=True, children=do)
-            case "reactive_selector":
-                return ReactiveSelector(name, do)
-            case "parallel":
-                return self._parallel(spec, name, do, given["until"])
-            case "guard":
-                return Guard(name, slots["while"], do[0], slots["else"][0] if "else" in slots else None)
-            case "for_each":
-                items = self._argument("items", inputs["items"], spec.arguments["items"])
-                return ForEach(name, do[0], items, self._variable(given["as"]), given["until"])
-            case "when":
-                return self._when(spec, name, do)
-            case "retry" if "recover" in slots:
-                return Recovery(name, do[0], slots["recover"][0], given["attempts"])
-            case "retry":
-                return Retry(name, do[0], given["attempts"])
-            case "repeat":
-                times = -1 if given["times"] == "forever" else given["times"]
-                return Repeat(name, do[0], times)
-            case "timeout":
-                return Timeout(name, do[0], given["seconds"])
-            case "invert":
-                return py_trees.decorators.Inverter(name, do[0])
-            case "force_success":
-                return py_trees.decorators.FailureIsSuccess(name, do[0])
-            case _:
-                return py_trees.decorators.SuccessIsFailure(name, do[0])
-
-    def _when(self, spec: NodeSpec, name: str, do: list[Node]) -> Node:
-        text = str(spec.arguments["condition"].value)
-        check = parse_condition(text).compile()
-        if do:
-            return When(name, do[0], check, text, self._scope)
-        return cast(Node, Condition(name, check, text, self._scope))
-
-    def _parallel(self, spec: NodeSpec, name: str, children: list[Node], until: str | list[str]) -> Node:
-        policy: ParallelPolicy.Base = ParallelPolicy.SuccessOnAll(synchronise=False)
-        if until == "any":
-            policy = ParallelPolicy.SuccessOnOne()
-        elif until != "all":
-            names = [until] if isinstance(until, str) else until
-            chosen = [child for child in children if child.name in names]
-            policy = ParallelPolicy.SuccessOnSelected(chosen, synchronise=False)
-        return py_trees.composites.Parallel(name, policy, children)
+        items = spec.arguments.get("items")
+        return assemble(
+            Parts(
+                spec,
+                name,
+                given,
+                slots,
+                self._scope,
+                self._argument("items", inputs["items"], items) if items else None,
+            )
+        )
 
 
 def _key(title: str) -> str:

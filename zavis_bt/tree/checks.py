@@ -11,7 +11,7 @@ from zavis_bt.tree.controls import SET
 from zavis_bt.tree.document import Element, Items, Scalar, Table
 from zavis_bt.tree.faults import Faults
 from zavis_bt.tree.library import Library
-from zavis_bt.tree.nodes import NAME
+from zavis_bt.tree.nodes import NAME, label
 from zavis_bt.tree.spec import Argument, FileSpec, NodeSpec, Reference, Signature, TreeSpec
 
 
@@ -68,6 +68,8 @@ def _check_node(node: NodeSpec, signature: Signature, tree: TreeSpec, library: L
     else:
         for name, argument in node.arguments.items():
             _check_argument(name, argument, node, signature, tree, faults)
+    if node.kind == "parallel" and "until" in node.arguments:
+        _check_until(node.arguments["until"], node, faults)
     for name, port in signature.inputs.items():
         if port.required and name not in node.arguments:
             faults.add(node.mark, "missing-argument", f"'{node.kind}' needs '{name}': {port.description}")
@@ -88,6 +90,19 @@ def _check_set(node: NodeSpec, tree: TreeSpec, library: Library) -> None:
             _, found = value_fault(declared.port, name, argument.element, argument.value)
             if found:
                 library.faults.add(*found)
+
+
+def _check_until(argument: Argument, node: NodeSpec, faults: Faults) -> None:
+    """Check that a parallel ends with children it has."""
+    names = [label(child) for child in node.children.get("do", ())]
+    wanted = argument.element.items if isinstance(argument.element, Items) else (argument.element,)
+    accepted = names if isinstance(argument.element, Items) else [*names, "all", "any"]
+    for item in wanted:
+        if isinstance(item.plain, str) and item.plain not in accepted:
+            near = did_you_mean(item.plain, accepted)
+            faults.add(item.mark, "name", f"no child of this parallel is called '{item.plain}'{near}")
+    if not wanted:
+        faults.add(argument.mark, "range", f"'until' is empty (all, any or names: {', '.join(names)})")
 
 
 def _check_argument(

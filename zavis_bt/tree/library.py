@@ -32,6 +32,8 @@ class Library:
         self.behaviours = Registry([*LEAVES, *registry.values()])
         self.faults = faults
         self.files: dict[Path, FileSpec] = {}
+        self.content: dict[Path, Any] = {}
+        """What the files say, without places: equal if only comments and layout differ."""
         ports = [
             port
             for class_ in self.behaviours.values()
@@ -81,6 +83,7 @@ class Library:
         if document is None:
             return None
         file = FileSpec(resolved, name or str(path), document.mark)
+        self.content[resolved] = document.plain
         if not isinstance(document, Table):
             self.faults.add(document.mark, "structure", "a tree file is a mapping with 'bt', 'root' and 'trees'")
             return None

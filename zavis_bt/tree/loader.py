@@ -99,5 +99,6 @@ def _build(path: Path, registry: Registry, inputs: Mapping[str, Any] | None, moc
     builder = Builder(library, replaced, namespace)
     node = builder.build(root, values)
     tree = Tree(node, builder.built, {**builder.scopes, "globals": builder.globals}, namespace)
+    tree.source = (library.content, inputs, mocks)
     faults.raise_if_any()
     return tree

@@ -16,6 +16,13 @@ NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 """Names of variables, params and ports."""
 
 
+def label(node: NodeSpec) -> str:
+    """Return how people call a node: its name or kind, whatever modifiers stand around it."""
+    while not node.name and node.kind in MODIFIERS and node.children.get("do"):
+        node = node.children["do"][0]
+    return node.name or node.kind
+
+
 class NodeParser:
     """Reads the nodes of one file."""
 

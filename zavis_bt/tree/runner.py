@@ -97,8 +97,9 @@ class Runner:
     def request_reload(self, tree_factory: Callable[[], Tree]) -> None:
         """Replace the tree between two ticks; may be called from any thread.
 
-        The old tree is stopped before the new one begins, from its root. If the factory fails (the file has a fault),
-        the old tree goes on and the fault is logged.
+        The old tree is stopped before the new one begins, from its root. If the new one says the same as the old one
+        (only comments or layout differ), or the factory fails (the file has a fault, which is logged), the old tree
+        goes on undisturbed.
 
         Args:
             tree_factory: Returns the new tree, set up.
@@ -165,8 +166,9 @@ class Runner:
         except ZavisError as error:
             log.error("the tree was not reloaded:\n%s", error)
             return
-        self.tree.stop()
-        self.tree = tree
+        if tree.source is None or tree.source != self.tree.source:
+            self.tree.stop()
+            self.tree = tree
 
     def _finish(self) -> None:
         for action in (self.tree.stop, *self._on_exit):

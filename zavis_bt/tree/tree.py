@@ -47,6 +47,8 @@ class Tree:
         """
         self.root = root
         self.namespace = namespace
+        self.source: object = None
+        """What it was made from; a tree made from an equal source does the same."""
         self._built = built
         self._scopes = scopes
         self._nodes = [entry.node for entry in built]
