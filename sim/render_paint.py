@@ -30,6 +30,7 @@ COLOUR_SPELLINGS = {"gray": "grey", "violet": "purple"}
 
 _LIGHT = np.array([-0.45, -0.28, 0.85])  # direction towards the lamp, map frame
 _NORMALS = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]], dtype=np.float64)
+_WOOD = (186, 158, 128)
 _WALL, _SKY = (214, 208, 196), (226, 232, 238)
 _FLOOR = ((172, 146, 116), (164, 138, 109))  # two neighbouring tiles
 
@@ -47,14 +48,28 @@ def category_colour(category: str) -> tuple[int, int, int]:
     return round(255 * red), round(255 * green), round(255 * blue)
 
 
-def box_paint(colours: Sequence[tuple[str, str | None]], headings: FloatArray) -> NDArray[np.uint8]:
+def furniture_colour(category: str) -> tuple[int, int, int]:
+    """Return a category's colour as furniture has it: much of it is wood, and what stands on it should stand out."""
+    red, green, blue = (
+        round(0.4 * own + 0.6 * wood) for own, wood in zip(category_colour(category), _WOOD, strict=True)
+    )
+    return red, green, blue
+
+
+def object_colour(category: str, colour: str | None) -> tuple[int, int, int]:
+    """Return the colour an object is painted in: its own if that has a name, else its category's."""
+    named = basic_colour(colour.lower()) if colour else None
+    return COLOURS[named] if named else category_colour(category)
+
+
+def box_paint(colours: Sequence[tuple[int, int, int]], headings: FloatArray) -> NDArray[np.uint8]:
     """Return (n, 6, 3) the lit colour of each face.
 
     Args:
-        colours: Category and colour name (or None) of each of n boxes.
+        colours: (r, g, b) of each of n boxes.
         headings: (n, 2) cosine and sine of their yaw.
     """
-    base = np.array([_base(category, colour) for category, colour in colours], dtype=np.float64).reshape(-1, 1, 3)
+    base = np.array(colours, dtype=np.float64).reshape(-1, 1, 3)
     cos, sin = headings.T[..., None]
     normals = np.broadcast_to(_NORMALS, (len(headings), 6, 3))
     x, y, z = np.moveaxis(normals, -1, 0)
@@ -66,11 +81,6 @@ def room_paint() -> NDArray[np.uint8]:
     """Return (9, 3): the six faces of a wall, two floor tiles, and what is seen where there is nothing."""
     walls = _lit(np.array(_WALL, dtype=np.float64), _NORMALS)
     return np.vstack((walls, np.array([*_FLOOR, _SKY], dtype=np.uint8)))
-
-
-def _base(category: str, colour: str | None) -> tuple[int, int, int]:
-    named = basic_colour(colour.lower()) if colour else None
-    return COLOURS[named] if named else category_colour(category)
 
 
 def _lit(base: FloatArray, normals: FloatArray) -> NDArray[np.uint8]:

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.render_paint import box_paint, room_paint
+from sim.render_paint import box_paint, furniture_colour, object_colour, room_paint
 from sim.render_rays import CARRIES, COS, CX, HX, SIN, WALL_SLACK, IntArray, Solids, cast_rays
 from sim.world import Furniture, World, WorldObject
 from zavis_bt.types import FloatArray
@@ -47,7 +47,8 @@ class Scene:
     @cached_property
     def paints(self) -> NDArray[np.uint8]:
         """(6 n + 9, 3) lit colours: the six faces of each box, then `room_paint`."""
-        colours = [(thing.category, getattr(thing, "colour", None)) for thing in self.things]
+        colours = [furniture_colour(piece.category) for piece in self.furniture]
+        colours += [object_colour(thing.category, thing.colour) for thing in self.objects]
         boxes = box_paint(colours, self.solids.boxes[:, COS : SIN + 1])
         return np.vstack((boxes.reshape(-1, 3), room_paint()))
 
