@@ -61,6 +61,14 @@ NODES = {
     "guard without do": ("guard: {while: [scan]}", "1:1: error[structure]: 'guard' needs 'do'"),
     "empty sequence": ("sequence: []", "1:11: error[structure]: 'do' has no nodes"),
     "sequence of nothing": ("sequence: {scan: {}}", "1:11: error[structure]: 'sequence' takes a list of nodes"),
+    "loop variable from a variable": (
+        "for_each: {items: [1], as: $x}\ndo: scan",
+        "1:28: error[reference]: 'as' of 'for_each'",
+    ),
+    "loop variable is no name": (
+        "for_each: {items: [1], as: a-b}\ndo: scan",
+        "1:28: error[name]: 'a-b' is no name of a",
+    ),
     "alias": ("sequence:\n  - &a {scan: {}}\n  - *a", "error[syntax]: an alias of a list or mapping"),
     "tag": ("succeed: !!python/name:os.system x", "1:10: error[syntax]: the tag 'python/name:os.system'"),
 }

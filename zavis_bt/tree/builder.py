@@ -203,16 +203,8 @@ class _Instance:
             given[key] = 1 if value is UNSET else value
         slots = {slot: [self.node(child, depth + 1) for child in nodes] for slot, nodes in spec.children.items()}
         items = spec.arguments.get("items")
-        return assemble(
-            Parts(
-                spec,
-                name,
-                given,
-                slots,
-                self._scope,
-                self._argument("items", inputs["items"], items) if items else None,
-            )
-        )
+        loop = self._argument("items", inputs["items"], items) if items else None
+        return assemble(Parts(spec, name, given, slots, self._scope, loop))
 
 
 def _key(title: str) -> str:

@@ -14,6 +14,9 @@ from zavis_bt.tree.library import Library
 from zavis_bt.tree.nodes import NAME, label
 from zavis_bt.tree.spec import Argument, FileSpec, NodeSpec, Reference, Signature, TreeSpec
 
+WRITTEN_OUT = (("for_each", "as"), ("for_each", "until"), ("parallel", "until"))
+"""Arguments that shape the tree and the analysis of its data."""
+
 
 def check_file_root(file: FileSpec, faults: Faults) -> None:
     """Check that the main file names one of its trees as the root."""
@@ -114,6 +117,12 @@ def _check_argument(
         faults.add(argument.key, "argument", f"'{node.kind}' has no argument '{name}'{near}")
     elif node.kind == "when":
         _check_condition(argument, faults)
+    elif (node.kind, name) in WRITTEN_OUT and isinstance(argument.value, Reference):
+        faults.add(
+            argument.mark, "reference", f"'{name}' of '{node.kind}' is written out, not taken from {argument.value}"
+        )
+    elif (node.kind, name) == ("for_each", "as") and not NAME.fullmatch(str(argument.value)):
+        faults.add(argument.mark, "name", f"{argument.value!r} is no name of a variable (letters, digits, underscores)")
     elif isinstance(argument.value, Reference):
         _check_constant(name, argument, node, signature, tree, faults)
     elif _looks_like_reference(argument):
