@@ -62,8 +62,8 @@ NODES = {
     "empty sequence": ("sequence: []", "1:11: error[structure]: 'do' has no nodes"),
     "sequence of nothing": ("sequence: {scan: {}}", "1:11: error[structure]: 'sequence' takes a list of nodes"),
     "loop variable from a variable": (
-        "for_each: {items: [1], as: $x}\ndo: scan",
-        "1:28: error[reference]: 'as' of 'for_each'",
+        "{sequence: [{set: {x: a}}, {for_each: {items: [1], as: $x}, do: scan}]}",
+        "1:56: error[reference]: 'as' of 'for_each' is written out, not taken from $x",
     ),
     "loop variable is no name": (
         "for_each: {items: [1], as: a-b}\ndo: scan",
