@@ -23,7 +23,7 @@ def instances_named(world: World, text: str, similarity: Callable[[str, str], fl
         Ids, none if nothing in the world is meant.
     """
     query = parse_text(text)
-    names = {thing.category for thing in (*world.objects, *world.furniture)}
+    names = {thing.category for thing in world.objects} | {piece.category for piece in world.furniture}
     exact = {name for name in names if normal_name(name) == query.noun}
     meant = exact or {name for name in names if similarity(name, query.noun) >= SAME_THING}
     objects = (o.id for o in world.objects if o.category in meant and query.colour in (None, o.colour))

@@ -45,17 +45,18 @@ def bench(
 
     trees = {name: _tree(name) for name in method}
     spec = load_robot_spec(robot)
-    options = {"perception": perception, "prior": prior}
     settings = MissionSettings(planner=planner, max_travel=max_travel)
-    choices = {
-        name: Choices(tree=path, robot=spec, method=name, settings=settings, **options) for name, path in trees.items()
-    }
+    common = partial(Choices, robot=spec, perception=perception, prior=prior, settings=settings)
+    choices = {name: common(tree=path, method=name) for name, path in trees.items()}
     chosen = load_episodes(episodes)[:limit]
     results = run_benchmark(
         make_tasks(chosen, method, seed, repeats),
         partial(run_episode, choices),
         out,
-        settings={"robot": robot, "planner": planner, "max_travel": max_travel, "seed": seed, **options},
+        settings={
+            **{"robot": robot, "perception": perception, "prior": prior},
+            **{"planner": planner, "max_travel": max_travel, "seed": seed},
+        },
         workers=workers,
     )
     write_summary(results, out)

@@ -14,7 +14,7 @@ from sim.simulation import Simulation
 from sim.targets import instances_named
 from sim.world import World
 from zavis_bt.errors import InputError, did_you_mean
-from zavis_bt.knowledge import WordVectors, make_prior
+from zavis_bt.knowledge import make_prior, word_vectors
 from zavis_bt.mission import (
     InlineJobs,
     Mission,
@@ -100,7 +100,7 @@ class SimulatedMission:
         self.simulation = Simulation(world, choices.robot, start, task.seed, real_time=choices.real_time)
         clock = self.simulation.clock
         self._jobs: ThreadJobs | InlineJobs = ThreadJobs() if choices.real_time else InlineJobs(clock)
-        similarity = WordVectors().similarity
+        similarity = word_vectors().similarity
         wanted = instances_named(world, target, similarity) if targets is None else targets
         parts = Parts(
             robot=self.simulation.robot,

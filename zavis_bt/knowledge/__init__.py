@@ -4,7 +4,7 @@ from zavis_bt.knowledge.commonsense_prior import CommonsensePrior
 from zavis_bt.knowledge.priors import PRIORS, commonsense, make_prior, none, word
 from zavis_bt.knowledge.simple_priors import UniformPrior, WordPrior
 from zavis_bt.knowledge.table import CommonsenseTable, load_table
-from zavis_bt.knowledge.vectors import WordVectors
+from zavis_bt.knowledge.vectors import WordVectors, word_vectors
 
 __all__ = [
     "PRIORS",
@@ -18,4 +18,5 @@ __all__ = [
     "make_prior",
     "none",
     "word",
+    "word_vectors",
 ]

@@ -12,7 +12,7 @@ from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.knowledge.commonsense_prior import CommonsensePrior
 from zavis_bt.knowledge.simple_priors import UniformPrior, WordPrior
 from zavis_bt.knowledge.table import load_table
-from zavis_bt.knowledge.vectors import WordVectors
+from zavis_bt.knowledge.vectors import word_vectors
 from zavis_bt.protocols import KnowledgePrior
 
 ENTRY_POINT_GROUP = "zavis_bt.priors"
@@ -38,12 +38,12 @@ def commonsense(
         raise InputError(f"prior 'commonsense': floor is {floor} (0 or more, below 1)")
     if not 0.0 <= decay <= 1.0:
         raise InputError(f"prior 'commonsense': decay is {decay} (0 to 1)")
-    return CommonsensePrior(load_table(table), WordVectors(), neighbours=neighbours, floor=floor, decay=decay)
+    return CommonsensePrior(load_table(table), word_vectors(), neighbours=neighbours, floor=floor, decay=decay)
 
 
 def word() -> KnowledgePrior:
     """Make the prior of the word-similarity ablation; see `WordPrior`."""
-    return WordPrior(WordVectors())
+    return WordPrior(word_vectors())
 
 
 def none() -> KnowledgePrior:

@@ -2,6 +2,7 @@
 
 from zavis_bt.mapping.association import AssociationSettings
 from zavis_bt.mapping.carmen import CarmenScan, read_carmen
+from zavis_bt.mapping.coverage import searched_landmarks
 from zavis_bt.mapping.frontiers import Frontier, find_frontiers, frontier_goal
 from zavis_bt.mapping.line_of_sight import clear_line, visible_from
 from zavis_bt.mapping.map_server import load_map, save_map
@@ -28,5 +29,6 @@ __all__ = [
     "load_map",
     "read_carmen",
     "save_map",
+    "searched_landmarks",
     "visible_from",
 ]
