@@ -28,7 +28,8 @@ class AStarPlanner:
         ends = endpoints(costmap, start, goal)
         width = costmap.grid.shape[1] + 2 * BORDER
         source, target = ((row + BORDER) * width + col + BORDER for row, col in (ends.first, ends.last))
-        way = search(np.pad(costmap.cost, BORDER, constant_values=np.inf).ravel(), width, source, target)
+        cost = np.pad(costmap.cost, BORDER, constant_values=np.inf).ravel()
+        way = search(cost, np.pad(costmap.tight, BORDER).ravel(), costmap.field, costmap.body, width, source, target)
         if not len(way):
             raise PlanningError("no path: the goal is cut off from the start")
         rows, cols = np.divmod(way, width)
@@ -47,11 +48,16 @@ def finish(costmap: Costmap, ends: Endpoints, way: FloatArray) -> Path:
         The path from the very start to the very goal, pulled taut; the way out of an obstacle is left as it is.
     """
     points = np.vstack((ends.start, way, ends.goal))
-    radius = costmap.radius / costmap.grid.resolution
-    if ends.escapes:
-        taut = np.vstack((ends.start, pull_taut(costmap.field, costmap.barred, costmap.cost, radius, points[1:])))
-    else:
-        taut = pull_taut(costmap.field, costmap.barred, costmap.cost, radius, points)
+    fixed = 1 if ends.escapes else 0
+    taut = pull_taut(
+        costmap.field,
+        costmap.barred,
+        costmap.cost,
+        costmap.tight,
+        costmap.radius / costmap.grid.resolution,
+        points[fixed:],
+    )
+    taut = np.vstack((points[:fixed], taut))
     return Path(costmap.to_points(_without_repeats(taut)))
 
 

@@ -9,21 +9,37 @@ from numba import njit
 from numpy.typing import NDArray
 
 from zavis_bt.planning.distance_field import DistanceField
-from zavis_bt.planning.grid_kernels import line_fits
-from zavis_bt.planning.steps import steps_of
+from zavis_bt.planning.grid_kernels import Body, body_fits, line_fits
+from zavis_bt.planning.steps import BORDER, steps_of
 from zavis_bt.types import FloatArray
 
 _SQRT2, _SQRT5 = math.sqrt(2.0), math.sqrt(5.0)
+_STRAIGHT_ON = 0.5  # largest bend where the outline cannot turn: that between neighbouring directions [rad]
 _GRAZE = 1.5  # factor on a diagonal step between cells of which one is not passable
 
 
 @njit(cache=True)
-def search(cost: NDArray[np.float32], width: int, source: int, target: int) -> NDArray[np.int32]:
+def search(
+    cost: NDArray[np.float32],
+    tight: NDArray[np.bool_],
+    field: DistanceField,
+    body: Body,
+    width: int,
+    source: int,
+    target: int,
+) -> NDArray[np.int32]:
     """Return the cheapest way from one cell to another.
+
+    Where the outline fits but cannot turn, a step is taken only if the outline fits along it, and not after a step in
+    another direction. Headings are not part of the search, so a way that needs a detour to enter a tight passage
+    straight is found in most cases, not in all.
 
     Args:
         cost: Flat, with a rim of `steps.BORDER` cells: price of a unit of length, at least 1; inf where not passable.
-        width: Cells in a row of it.
+        tight: Flat, with the same rim: cells where the outline fits but cannot turn.
+        field: Distances to obstacles.
+        body: The outline.
+        width: Cells in a row with the rim.
         source: Flat index.
         target: Flat index.
 
@@ -33,9 +49,10 @@ def search(cost: NDArray[np.float32], width: int, source: int, target: int) -> N
     size = len(cost)
     best = np.full(size, np.inf, dtype=np.float32)
     parent = np.full(size, -1, dtype=np.int32)
+    came = np.full(size, -1, dtype=np.int8)  # the step that led to a cell
     done = np.zeros(size, dtype=np.bool_)
     keys, cells, count = np.empty(1024, dtype=np.float32), np.empty(1024, dtype=np.int32), 0
-    moves, lengths, first, second = steps_of(width)
+    moves, lengths, angles, first, second = steps_of(width)
     goal_row, goal_col = target // width, target % width
     best[source] = 0.0
     keys[0], cells[0], count = 0.0, source, 1
@@ -51,6 +68,11 @@ def search(cost: NDArray[np.float32], width: int, source: int, target: int) -> N
             other = cell + moves[i]
             if done[other] or cost[other] == np.inf:
                 continue
+            if tight[cell] or tight[other]:
+                if tight[cell] and came[cell] >= 0 and _bend(angles[i] - angles[came[cell]]) > _STRAIGHT_ON:
+                    continue
+                if not _fits(field, body, width, cell, angles[i]) or not _fits(field, body, width, other, angles[i]):
+                    continue
             length = lengths[i]
             beside = cost[cell + first[i]] == np.inf or cost[cell + second[i]] == np.inf
             if beside and i >= 4:
@@ -59,13 +81,23 @@ def search(cost: NDArray[np.float32], width: int, source: int, target: int) -> N
                 length *= _GRAZE
             new = here + np.float32(0.5 * length) * (price + cost[other])
             if new < best[other]:
-                best[other], parent[other] = new, cell
+                best[other], parent[other], came[other] = new, cell, i
                 if count == len(keys):
                     keys = np.concatenate((keys, np.empty_like(keys)))
                     cells = np.concatenate((cells, np.empty_like(cells)))
                 key = new + _heuristic(abs(other // width - goal_row), abs(other % width - goal_col))
                 count = _push(keys, cells, count, np.float32(key), other)
     return np.empty(0, dtype=np.int32)
+
+
+@njit(cache=True)
+def _bend(angle: float) -> float:
+    return abs(angle - math.tau * math.floor(angle / math.tau + 0.5))
+
+
+@njit(cache=True)
+def _fits(field: DistanceField, body: Body, width: int, cell: int, angle: float) -> bool:
+    return body_fits(field, body, float(cell % width - BORDER), float(cell // width - BORDER), angle)
 
 
 @njit(cache=True)
@@ -129,15 +161,19 @@ def pull_taut(
     field: DistanceField,
     barred: NDArray[np.bool_],
     cost: NDArray[np.float32],
+    tight: NDArray[np.bool_],
     radius: float,
     points: FloatArray,
 ) -> FloatArray:
     """Replace stretches of a way by straight lines that fit and cost no more.
 
+    Lines end where the outline can turn if there is such a point within sight.
+
     Args:
         field: Distances to obstacles.
         barred: (rows, cols) cells where the robot's middle may not be.
         cost: (rows, cols) price of a unit of length.
+        tight: (rows, cols) cells where the outline fits but cannot turn.
         radius: Clearance that lines must have.
         points: (n, 2) the way (u, v).
 
@@ -156,11 +192,21 @@ def pull_taut(
             u0, v0, u1, v1 = points[here, 0], points[here, 1], points[far, 0], points[far, 1]
             allowed = price[far] - price[here] + 1e-6
             if line_fits(field, barred, radius, u0, v0, u1, v1) and _line_price(cost, u0, v0, u1, v1) <= allowed:
-                there = far
-                break
+                if there == here + 1:
+                    there = far
+                if far == len(points) - 1 or not _at(tight, points[far, 0], points[far, 1]):
+                    there = far
+                    break
         kept[count] = here = there
         count += 1
     return points[kept[:count]]
+
+
+@njit(cache=True)
+def _at(mask: NDArray[np.bool_], u: float, v: float) -> bool:
+    rows, cols = mask.shape
+    found: bool = mask[min(max(round(v), 0), rows - 1), min(max(round(u), 0), cols - 1)]
+    return found
 
 
 @njit(cache=True)

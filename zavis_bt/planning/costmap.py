@@ -28,6 +28,8 @@ _UNKNOWN_RULES: tuple[UnknownRule, ...] = ("avoid", "allow", "obstacle")
 _RECTANGLE_MARGIN = 0.02  # beyond the inscribed radius, for headings that are not quite along the passage [m]
 _COMFORT = 0.3  # clearance beyond the radius from which more is not better [m]
 _COMFORT_WEIGHT = 0.3  # what a metre costs extra where the robot only just fits
+_NEAR = 0.12  # clearance beyond the radius below which driving is slow [m]
+_NEAR_WEIGHT = 0.6  # what a metre costs extra there at most, on top
 _TIGHT_WEIGHT = 2.0  # what a metre costs extra where a rectangle fits but cannot turn on the spot
 
 
@@ -94,10 +96,18 @@ class Costmap:
         return _frozen((self.field.distance >= np.float32(limit)) & ~self.barred)
 
     @cached_property
+    def tight(self) -> NDArray[np.bool_]:
+        """(rows, cols) passable cells where a rectangle cannot turn on the spot; none for a disc."""
+        limit = np.float32(self.turning_radius / self.grid.resolution - 1e-5)
+        return _frozen(self.passable & (self.field.distance < limit))
+
+    @cached_property
     def cost(self) -> NDArray[np.float32]:
         """(rows, cols) price of a metre: 1 in the open, more near obstacles, inf where not passable."""
-        lack = np.clip((self.radius + _COMFORT - self.distance) / _COMFORT, 0.0, 1.0)
-        cost = 1.0 + _COMFORT_WEIGHT * lack * lack
+        cost = np.ones(self.grid.shape, dtype=np.float32)
+        for weight, reach in ((_COMFORT_WEIGHT, _COMFORT), (_NEAR_WEIGHT, _NEAR)):
+            lack = np.clip((self.radius + reach - self.distance) / np.float32(reach), 0.0, 1.0)
+            cost += weight * lack * lack
         if self.turning_radius > self.radius:
             tight = (self.turning_radius - self.distance) / (self.turning_radius - self.radius)
             cost += _TIGHT_WEIGHT * np.clip(tight, 0.0, 1.0)

@@ -9,9 +9,10 @@ import numpy as np
 
 from zavis_bt.planning.costmap import Costmap
 from zavis_bt.planning.dwa_kernels import Rollout, best_motion, motion_fits, unmapped
-from zavis_bt.planning.grid_kernels import Body, largest_fit
+from zavis_bt.planning.grid_kernels import Body, body_fits, largest_fit
 from zavis_bt.types import FloatArray, LaserScan, Pose2D, RobotSpec, Twist2D
 
+_CORNER = 0.003  # [m]
 NO_OBSTACLES: FloatArray = np.empty((0, 2))
 
 
@@ -39,6 +40,8 @@ class DwaSettings:
     """Clearance beyond the outline from which more is not better [m]."""
     smoothness: float = 0.01
     """[m per rad/s]"""
+    worthwhile: float = 0.01
+    """A motion that keeps the margin is preferred if it is better than to stand still by so much [m]."""
 
 
 class DwaPlanner:
@@ -113,23 +116,26 @@ class DwaPlanner:
         speeds, rates = self._window(twist, dt, speed_limit)
         state = _uv(costmap, pose)
         (goal,) = costmap.to_uv(np.array([target]))
+        found, most = None, -math.inf
         for body in self._outlines(costmap, state):
-            i, j = best_motion(
+            i, j, gain = best_motion(
                 costmap.field,
                 body,
                 self._rollout(dt, resolution),
                 state,
                 speeds / resolution,
                 rates,
-                twist.angular,
+                (twist.linear / resolution, twist.angular),
                 (goal[0], goal[1]),
                 costmap.to_uv(path),
                 costmap.to_uv(obstacles),
                 self._settings.give / resolution,
             )
-            if i >= 0:
-                return Twist2D(float(speeds[i]), float(rates[j]))
-        return None
+            if i >= 0 and gain > most:
+                found, most = Twist2D(float(speeds[i]), float(rates[j])), gain
+            if most * resolution > self._settings.worthwhile:
+                break
+        return found
 
     def turn(
         self,
@@ -153,18 +159,18 @@ class DwaPlanner:
         Returns:
             None if the outline cannot turn here.
         """
-        limits = self._spec.limits
         error = math.remainder(heading - pose.yaw, math.tau)
-        speed = math.copysign(max(abs(twist.linear) - limits.linear_acceleration * dt, 0.0), twist.linear)
-        rate = self._turn_rate(error, twist.angular, dt)
-        state = _uv(costmap, pose)
-        resolution = costmap.grid.resolution
-        seconds = max(3 * dt, 0.3)
+        change = self._spec.limits.linear_acceleration * dt
+        speed = math.copysign(max(abs(twist.linear) - change, 0.0), twist.linear)
+        state, resolution = _uv(costmap, pose), costmap.grid.resolution
+        uv, give = costmap.to_uv(obstacles), self._settings.give / resolution
         for body in self._outlines(costmap, state):
-            give = self._settings.give / resolution
-            uv = costmap.to_uv(obstacles)
-            if motion_fits(costmap.field, body, state, speed / resolution, rate, seconds, uv, give):
-                return Twist2D(speed, rate)
+            for angle in (error, error - math.copysign(math.tau, error)):  # the long way where the short one is barred
+                if not motion_fits(costmap.field, body, state, 0.0, angle, 1.0, uv, give):
+                    continue
+                rate = self._turn_rate(angle, twist.angular, dt)
+                if speed == 0.0 or motion_fits(costmap.field, body, state, speed / resolution, rate, 3 * dt, uv, give):
+                    return Twist2D(speed, rate)
         return Twist2D() if abs(twist.linear) > 1e-3 else None
 
     def _turn_rate(self, error: float, now: float, dt: float) -> float:
@@ -192,6 +198,7 @@ class DwaPlanner:
             settings.horizon,
             0.1,
             0.9 * self._spec.limits.linear_acceleration / resolution,
+            0.9 * self._spec.limits.angular_acceleration,
             dt,
             settings.heading_weight / resolution,
             settings.path_weight,
@@ -201,11 +208,15 @@ class DwaPlanner:
         )
 
     def _outlines(self, costmap: Costmap, state: tuple[float, float, float]) -> tuple[Body, ...]:
-        """The outline with its margin, as it is, and shrunk to what is free now."""
-        body, margin = costmap.body, self._settings.margin / costmap.grid.resolution
+        """The outlines to try: with the margin, as it is or nearly, or shrunk to what is free now."""
+        body, resolution = costmap.body, costmap.grid.resolution
         scale = largest_fit(costmap.field, body, *state)
-        padded = body.padded(margin)
-        return (padded, body) if scale >= 1.0 else (body.scaled(scale - 1e-3),)
+        if scale < 1.0:
+            return (body.scaled(scale - 1e-3),)
+        if not body.disc:  # corners pass obstacles between the poses that are checked
+            cautious = body.padded(_CORNER / resolution)
+            body = cautious if body_fits(costmap.field, cautious, *state) else body
+        return body.padded(self._settings.margin / resolution), body
 
 
 def _uv(costmap: Costmap, pose: Pose2D) -> tuple[float, float, float]:

@@ -12,6 +12,8 @@ from zavis_bt.planning.distance_field import DistanceField
 from zavis_bt.planning.grid_kernels import Body, body_fits
 from zavis_bt.types import FloatArray
 
+_TURN_STEP = 0.02  # between checked headings [rad]
+
 
 class Rollout(NamedTuple):
     """How motions are rolled out and judged; lengths in cells."""
@@ -22,6 +24,8 @@ class Rollout(NamedTuple):
     """Longest time between two checked poses [s]."""
     deceleration: float
     """[cells/s²]"""
+    angular_deceleration: float
+    """[rad/s²]"""
     reaction: float
     """Time in which a command is carried out [s]."""
     heading_weight: float
@@ -44,13 +48,13 @@ def best_motion(
     pose: tuple[float, float, float],
     speeds: FloatArray,
     rates: FloatArray,
-    rate_now: float,
+    now: tuple[float, float],
     target: tuple[float, float],
     path: FloatArray,
     obstacles: FloatArray,
     give: float,
-) -> tuple[int, int]:
-    """Return the indices of the best speed [cells/s] and turn rate [rad/s], or (-1, -1) if none is admissible.
+) -> tuple[int, int, float]:
+    """Find the best speed [cells/s] and turn rate [rad/s].
 
     A motion is admissible if the outline stays free on its arc as far as it takes to brake. It is judged by where it
     leads within the horizon, or before it would collide: near the target, facing it, near the path, off obstacles.
@@ -62,20 +66,25 @@ def best_motion(
         pose: u, v, yaw of the robot.
         speeds: (n,) to choose from.
         rates: (m,) to choose from.
-        rate_now: Turn rate at present [rad/s].
+        now: Speed [cells/s] and turn rate [rad/s] at present; they change evenly while the command is carried out.
         target: u, v of where to go next.
         path: (k, 2) u, v of the path from the robot to a little beyond the target.
         obstacles: (j, 2) u, v of obstacles that are not on the map.
         give: How deep these may reach into the outline.
+
+    Returns:
+        Indices of speed and turn rate, (-1, -1) if none is admissible, and by how much the motion scores better than
+        to stand still.
     """
+    still = _judge(field, body, rollout, pose, now, 0.0, 0.0, target, path, obstacles, give, math.inf)
     best, found = math.inf, (-1, -1)
     for i in range(len(speeds)):
         for j in range(len(rates)):
-            score = _judge(field, body, rollout, pose, speeds[i], rates[j], target, path, obstacles, give, best)
-            score += rollout.smoothness * abs(rates[j] - rate_now)
+            score = _judge(field, body, rollout, pose, now, speeds[i], rates[j], target, path, obstacles, give, best)
+            score += rollout.smoothness * abs(rates[j] - now[1])
             if score < best:
                 best, found = score, (i, j)
-    return found
+    return found[0], found[1], min(still, 1e9) - best
 
 
 @njit(cache=True)
@@ -84,6 +93,7 @@ def _judge(
     body: Body,
     rollout: Rollout,
     pose: tuple[float, float, float],
+    now: tuple[float, float],
     speed: float,
     rate: float,
     target: tuple[float, float],
@@ -94,25 +104,35 @@ def _judge(
 ) -> float:
     """Return the score of one motion, the lower the better; inf if it is not admissible."""
     u, v, yaw = pose
-    step = min(rollout.step, 1.0 / max(abs(speed), 1e-9))
-    count = math.ceil(rollout.horizon / step)
-    turn, chord = _arc(speed, rate, step)
-    cos, sin = math.cos(yaw + turn / 2), math.sin(yaw + turn / 2)
-    cos_turn, sin_turn = math.cos(turn), math.sin(turn)
-    braking = speed * speed / (2 * rollout.deceleration) + abs(speed) * rollout.reaction
-    if math.hypot(target[0] - u, target[1] - v) - abs(speed) * rollout.horizon > best:
+    if math.hypot(target[0] - u, target[1] - v) - max(speed, now[0]) * rollout.horizon > best:
         return math.inf  # cannot get near enough to the target to be the best
-    lack, done = 0.0, 0
-    moving = speed != 0.0 or not body.disc
-    for k in range(1, count + 1):
+    # The way while braking evenly is that of half the time at full speed.
+    spin = 0.0 if body.disc else abs(rate)
+    braking = rollout.reaction + max(abs(speed) / rollout.deceleration, spin / rollout.angular_deceleration) / 2
+    step = min(rollout.step, 1.0 / max(abs(speed) + spin * body.outer, 1e-9))  # no part moves more than a cell
+    count = 1 + math.ceil((rollout.horizon - rollout.reaction) / step)
+    moving = speed != 0.0 or now[0] != 0.0 or not body.disc
+    turn, chord = _arc((speed + now[0]) / 2, (rate + now[1]) / 2, rollout.reaction)
+    cos, sin, cos_turn, sin_turn = math.cos(yaw + turn / 2), math.sin(yaw + turn / 2), 1.0, 0.0
+    lack, done, elapsed = 0.0, 0, rollout.reaction
+    for k in range(count):
         nu, nv, nyaw = u + chord * cos, v + chord * sin, yaw + turn
         if moving and not _free(field, body, nu, nv, nyaw, obstacles, give):
-            if (k - 1) * step * abs(speed) < braking or (speed == 0.0 and k <= 3):
+            if elapsed <= braking + 1e-9 or k == 0:
                 return math.inf
             break
-        cos, sin = cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
-        u, v, yaw, done = nu, nv, nyaw, k
+        u, v, yaw, done, elapsed = nu, nv, nyaw, k + 1, elapsed + step
         lack += _lack(field, body, rollout.comfort, u, v)
+        if k == 0:
+            turn, chord = _arc(speed, rate, step)
+            cos, sin, cos_turn, sin_turn = (
+                math.cos(yaw + turn / 2),
+                math.sin(yaw + turn / 2),
+                math.cos(turn),
+                math.sin(turn),
+            )
+        else:
+            cos, sin = cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
     du, dv = target[0] - u, target[1] - v
     distance = math.hypot(du, dv)
     off = (math.atan2(dv, du) - yaw) / math.tau if distance > 0.5 else 0.0
@@ -174,7 +194,7 @@ def motion_fits(
     u, v, yaw = pose
     if speed == 0.0 and body.disc:
         return True
-    count = max(math.ceil(abs(speed) * seconds), math.ceil(abs(rate) * seconds / 0.05), 1)
+    count = max(math.ceil(abs(speed) * seconds), math.ceil(abs(rate) * seconds / _TURN_STEP), 1)
     turn, chord = _arc(speed, rate, seconds / count)
     for _ in range(count):
         u, v = u + chord * math.cos(yaw + turn / 2), v + chord * math.sin(yaw + turn / 2)

@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
-import numpy as np
-
 from zavis_bt.planning.costmap import Costmaps
 from zavis_bt.planning.dwa import NO_OBSTACLES, DwaPlanner
+from zavis_bt.planning.guide import Aim, Guide
 from zavis_bt.planning.stall import StallWatch
 from zavis_bt.planning.track import Track
 from zavis_bt.types import BaseState, FloatArray, LaserScan, Path, Pose2D, RobotSpec, Twist2D
@@ -18,10 +17,11 @@ _PERIOD = 0.1  # time to the next command while it is not known yet [s]
 _MAP_PERIOD = 0.5  # the path is compared with a new map at most so often [s]; the scan is looked at every time
 _LOST = 0.6  # so far off the path it is no longer the path [m]
 _PATIENCE = 0.5  # without an admissible motion for so long is blocked [s]
-_TURN_FROM, _TURN_TO = math.radians(60), math.radians(12)  # turn on the spot from one bearing down to the other
-_LOOK_AHEAD, _NEAR_LOOK_AHEAD = 0.9, 0.25  # [m]
-_SLOWEST = 0.1  # [m/s]
-_SPEED_PER_CLEARANCE = 2.2  # [1/s]
+_TURN = math.radians(60), math.radians(12)  # turn on the spot from one bearing to the target down to the other
+_TURN_EXACTLY = math.radians(4), math.radians(1)  # the same where the passage is narrow
+_PATH_AHEAD = 1.1  # so much of the path counts for how far motions are off it [m]
+_LAG = 0.3  # a base that gets to the commanded velocity within this time follows it [s]
+_IDLE = 0.02  # motions slower than this lead nowhere [m/s], [rad/s]
 _AT_END = 0.03  # the end of the path counts as reached from here [m]
 
 
@@ -76,10 +76,12 @@ class PathFollower:
             tolerance: Accepted distance [m].
             yaw_tolerance: Accepted heading error [rad]; None if the heading does not matter.
         """
-        self._spec, self._costmaps, self._goal = spec, costmaps, goal
+        self._limits, self._costmaps, self._goal = spec.limits, costmaps, goal
         self._tolerance, self._yaw_tolerance = tolerance, yaw_tolerance
         self._track, self._dwa, self._watch = Track(path), DwaPlanner(spec), StallWatch()
+        self._guide = Guide(spec, self._track)
         self._costmap, self._checked_at = costmaps.current, -math.inf
+        self._guide.use(self._costmap)
         self._last: BaseState | None = None
         self._command = Twist2D()
         self._turning = self._at_goal = False
@@ -104,11 +106,11 @@ class PathFollower:
             return self._turn_to_goal(state, scan, dt)
         if off > _LOST or not self._still_fits(state.stamp):
             return self._end(FollowStatus.INVALID)
-        target = self._target(state.pose)
-        bearing = state.pose.bearing(*target)
+        aim = self._guide.aim(state.pose)
+        bearing = state.pose.bearing(*aim.target)
         if self._watch.stuck(state.stamp, state.pose, self._command, self._track.remaining, bearing):
             return self._end(FollowStatus.STUCK)
-        return self._go(FollowStatus.DRIVING, self._drive(state, scan, dt, target, bearing), state.stamp)
+        return self._go(FollowStatus.DRIVING, self._drive(state, scan, dt, aim, bearing), state.stamp)
 
     def _note(self, state: BaseState) -> float:
         """Sum up the way driven; return the time from command to command [s]."""
@@ -139,57 +141,40 @@ class PathFollower:
         if stamp - self._checked_at < _MAP_PERIOD or self._costmaps.version == self._costmap.grid.version:
             return True
         self._costmap, self._checked_at = self._costmaps.current, stamp
+        self._guide.use(self._costmap)
         begin = self._track.position + self._costmap.radius
         rest = self._track.stretch(min(begin, self._track.length), self._track.length)
         return self._costmap.path_fits(rest)
 
-    def _target(self, pose: Pose2D) -> tuple[float, float]:
-        """The farthest point ahead on the path to which the robot can go straight."""
-        track = self._track
-        ahead = _LOOK_AHEAD
-        while ahead > _NEAR_LOOK_AHEAD:
-            point = track.at(track.position + ahead)
-            if self._costmap.line_fits((pose.x, pose.y), point):
-                return point
-            ahead -= 0.1
-        return track.at(track.position + _NEAR_LOOK_AHEAD)
-
-    def _drive(
-        self, state: BaseState, scan: LaserScan | None, dt: float, target: tuple[float, float], bearing: float
-    ) -> Twist2D | None:
+    def _drive(self, state: BaseState, scan: LaserScan | None, dt: float, aim: Aim, bearing: float) -> Twist2D | None:
         pose, twist = state.pose, self._moving(state.twist)
         obstacles = self._obstacles(pose, scan)
-        self._turning = abs(bearing) > (_TURN_TO if self._turning else _TURN_FROM)
+        turn_from, turn_to = _TURN_EXACTLY if aim.exact else _TURN
+        self._turning = abs(bearing) > (turn_to if self._turning else turn_from)
         if self._turning:
-            heading = math.atan2(target[1] - pose.y, target[0] - pose.x)
-            turn = self._dwa.turn(pose, twist, heading, self._costmap, dt, obstacles)
+            turn = self._dwa.turn(pose, twist, pose.yaw + bearing, self._costmap, dt, obstacles)
             if turn is not None:
                 return turn
-        return self._dwa.command(
+        position = self._track.position
+        chosen = self._dwa.command(
             pose,
             twist,
-            target,
+            aim.target,
             self._costmap,
             dt,
-            path=self._track.stretch(self._track.position, self._track.position + 1.2 * _LOOK_AHEAD),
-            speed_limit=self._speed_limit(pose),
+            path=self._track.stretch(position, position + _PATH_AHEAD),
+            speed_limit=aim.speed_limit,
             obstacles=obstacles,
         )
-
-    def _speed_limit(self, pose: Pose2D) -> float:
-        """Slow near obstacles, here and a little ahead, and before the goal [m/s]."""
-        track, costmap = self._track, self._costmap
-        ahead = [(pose.x, pose.y), track.at(track.position + 0.2), track.at(track.position + 0.4)]
-        spare = float(costmap.clearance(np.array(ahead)).min()) - self._spec.footprint.inscribed_radius
-        halting = math.sqrt(2 * 0.7 * self._spec.limits.linear_acceleration * max(track.remaining - _AT_END / 2, 0.0))
-        return max(min(_SLOWEST + _SPEED_PER_CLEARANCE * max(spare, 0.0), halting), _SLOWEST)
+        idle = chosen is not None and abs(chosen.linear) < _IDLE and abs(chosen.angular) < _IDLE
+        return None if idle else chosen
 
     def _moving(self, measured: Twist2D) -> Twist2D:
         """The velocity from which the next command starts: the last command, if the base follows it."""
-        limits = self._spec.limits
         lag = Twist2D(self._command.linear - measured.linear, self._command.angular - measured.angular)
-        follows = abs(lag.linear) < 0.3 * limits.linear_acceleration and abs(lag.angular) < (
-            0.3 * limits.angular_acceleration
+        follows = (
+            abs(lag.linear) < _LAG * self._limits.linear_acceleration
+            and abs(lag.angular) < _LAG * self._limits.angular_acceleration
         )
         return self._command if follows else measured
 

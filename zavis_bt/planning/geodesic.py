@@ -90,7 +90,7 @@ def _dijkstra(passable: NDArray[np.bool_], width: int, source: int) -> tuple[NDA
     after, before = np.full(size, -1, dtype=np.int32), np.full(size, -1, dtype=np.int32)
     ring = _KNIGHT + 1
     head = np.full(ring, -1, dtype=np.int32)
-    moves, _, first, second = steps_of(width)
+    moves, _, _, first, second = steps_of(width)
     steps[source], head[0] = 0, source
     level, waiting = 0, 1
     while waiting > 0:

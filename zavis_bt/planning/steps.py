@@ -15,34 +15,29 @@ BORDER = 2
 
 
 @njit(cache=True)
-def steps_of(width: int) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64], NDArray[np.int64]]:
+def steps_of(width: int) -> tuple[NDArray[np.int64], FloatArray, FloatArray, NDArray[np.int64], NDArray[np.int64]]:
     """Return the steps on a flat grid.
 
     Args:
         width: Cells in a row.
 
     Returns:
-        For each of the 16 steps, straight ones first, then diagonal ones: the flat offset, the length [cells], and the
-        offsets of the two cells that a diagonal step or a knight's move passes.
+        For each of the 16 steps, straight ones first, then diagonal ones: the flat offset, the length [cells], the
+        direction [rad], and the offsets of the two cells that a diagonal step or a knight's move passes.
     """
     moves, first, second = np.empty(16, np.int64), np.zeros(16, np.int64), np.zeros(16, np.int64)
-    lengths = np.empty(16)
-    straight, corners = ((0, 1), (0, -1), (1, 0), (-1, 0)), ((1, 1), (1, -1), (-1, 1), (-1, -1))
+    lengths, angles = np.empty(16), np.empty(16)
     i = 0
-    for row, col in straight:
-        moves[i], lengths[i] = row * width + col, 1.0
+    for row, col in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        moves[i], lengths[i], angles[i] = row * width + col, 1.0, math.atan2(row, col)
         i += 1
-    for row, col in corners:
-        moves[i], lengths[i], first[i], second[i] = row * width + col, math.sqrt(2.0), row * width, col
+    for row, col in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        moves[i], lengths[i], angles[i] = row * width + col, math.sqrt(2.0), math.atan2(row, col)
+        first[i], second[i] = row * width, col
         i += 1
-    for row, col in corners:
-        moves[i], lengths[i], first[i], second[i] = (
-            2 * row * width + col,
-            math.sqrt(5.0),
-            row * width,
-            row * width + col,
-        )
-        i += 1
-        moves[i], lengths[i], first[i], second[i] = row * width + 2 * col, math.sqrt(5.0), col, row * width + col
-        i += 1
-    return moves, lengths, first, second
+    for row, col in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        for down, right in ((2 * row, col), (row, 2 * col)):
+            moves[i], lengths[i], angles[i] = down * width + right, math.sqrt(5.0), math.atan2(down, right)
+            first[i], second[i] = (row * width if abs(down) == 2 else col), row * width + col
+            i += 1
+    return moves, lengths, angles, first, second

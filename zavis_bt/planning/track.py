@@ -47,7 +47,7 @@ class Track:
 
     def at(self, arc: float) -> tuple[float, float]:
         """Return the point at an arc length [m]."""
-        x, y = _at(self.points, self.arc, arc)
+        x, y = point_at(self.points, self.arc, arc)
         return float(x), float(y)
 
     def stretch(self, begin: float, end: float) -> FloatArray:
@@ -73,7 +73,8 @@ def _project(points: FloatArray, arc: FloatArray, begin: float, end: float, x: f
 
 
 @njit(cache=True)
-def _at(points: FloatArray, arc: FloatArray, position: float) -> tuple[float, float]:
+def point_at(points: FloatArray, arc: FloatArray, position: float) -> tuple[float, float]:
+    """Return the point of a polyline at an arc length; ``arc`` (n,) are those of its (n, 2) points."""
     i = 0
     while i < len(points) - 2 and arc[i + 1] <= position:
         i += 1
