@@ -9,7 +9,7 @@ from zavis_bt.planning.astar_kernels import pull_taut, search
 from zavis_bt.planning.costmap import Costmap
 from zavis_bt.planning.endpoints import Endpoints, endpoints
 from zavis_bt.planning.errors import PlanningError
-from zavis_bt.planning.steps import BORDER
+from zavis_bt.planning.steps import BORDER, steps_of
 from zavis_bt.types import FloatArray, Path, Pose2D
 
 
@@ -29,7 +29,8 @@ class AStarPlanner:
         width = costmap.grid.shape[1] + 2 * BORDER
         source, target = ((row + BORDER) * width + col + BORDER for row, col in (ends.first, ends.last))
         cost = np.pad(costmap.cost, BORDER, constant_values=np.inf).ravel()
-        way = search(cost, np.pad(costmap.tight, BORDER).ravel(), costmap.field, costmap.body, width, source, target)
+        tight = np.pad(costmap.tight, BORDER).ravel()
+        way = search(cost, tight, costmap.field, costmap.body, steps_of(width), width, source, target)
         if not len(way):
             raise PlanningError("no path: the goal is cut off from the start")
         rows, cols = np.divmod(way, width)

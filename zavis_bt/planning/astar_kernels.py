@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from zavis_bt.planning.distance_field import DistanceField
 from zavis_bt.planning.grid_kernels import Body, body_fits, line_fits
-from zavis_bt.planning.steps import BORDER, steps_of
+from zavis_bt.planning.steps import BORDER, Steps
 from zavis_bt.types import FloatArray
 
 _SQRT2, _SQRT5 = math.sqrt(2.0), math.sqrt(5.0)
@@ -24,6 +24,7 @@ def search(
     tight: NDArray[np.bool_],
     field: DistanceField,
     body: Body,
+    steps: Steps,
     width: int,
     source: int,
     target: int,
@@ -39,6 +40,7 @@ def search(
         tight: Flat, with the same rim: cells where the outline fits but cannot turn.
         field: Distances to obstacles.
         body: The outline.
+        steps: Those on the flat grid.
         width: Cells in a row with the rim.
         source: Flat index.
         target: Flat index.
@@ -52,7 +54,6 @@ def search(
     came = np.full(size, -1, dtype=np.int8)  # the step that led to a cell
     done = np.zeros(size, dtype=np.bool_)
     keys, cells, count = np.empty(1024, dtype=np.float32), np.empty(1024, dtype=np.int32), 0
-    moves, lengths, angles, first, second = steps_of(width)
     goal_row, goal_col = target // width, target % width
     best[source] = 0.0
     keys[0], cells[0], count = 0.0, source, 1
@@ -65,18 +66,17 @@ def search(
             return _trace(parent, target)
         here, price = best[cell], cost[cell]
         for i in range(16):
-            other = cell + moves[i]
+            other = cell + steps.moves[i]
             if done[other] or cost[other] == np.inf:
                 continue
+            length, angle = steps.lengths[i], steps.angles[i]
             if tight[cell] or tight[other]:
-                if tight[cell] and came[cell] >= 0 and _bend(angles[i] - angles[came[cell]]) > _STRAIGHT_ON:
+                if tight[cell] and came[cell] >= 0 and _bend(angle - steps.angles[came[cell]]) > _STRAIGHT_ON:
                     continue
-                if not _fits(field, body, width, cell, angles[i]) or not _fits(field, body, width, other, angles[i]):
+                if not _fits(field, body, width, cell, angle) or not _fits(field, body, width, other, angle):
                     continue
-            length = lengths[i]
-            beside = cost[cell + first[i]] == np.inf or cost[cell + second[i]] == np.inf
-            if beside and i >= 4:
-                if i >= 8:
+            if cost[cell + steps.first[i]] == np.inf or cost[cell + steps.second[i]] == np.inf:
+                if length > 2.0:
                     continue
                 length *= _GRAZE
             new = here + np.float32(0.5 * length) * (price + cost[other])

@@ -20,6 +20,7 @@ from zavis_bt.planning.grid_kernels import (
     nearest_passable,
     polyline_fits,
 )
+from zavis_bt.planning.steps import open_steps
 from zavis_bt.types import OCCUPIED, UNKNOWN, FloatArray, Footprint, GridMap, Pose2D
 
 UnknownRule = Literal["avoid", "allow", "obstacle"]
@@ -94,6 +95,11 @@ class Costmap:
         """(rows, cols) cells where the robot fits."""
         limit = self.radius / self.grid.resolution - 1e-5
         return _frozen((self.field.distance >= np.float32(limit)) & ~self.barred)
+
+    @cached_property
+    def open_steps(self) -> NDArray[np.uint16]:
+        """Which of 16 steps lead from a passable cell to a passable one; flat, see `zavis_bt.planning.steps`."""
+        return _frozen(open_steps(self.passable))
 
     @cached_property
     def tight(self) -> NDArray[np.bool_]:

@@ -117,11 +117,11 @@ class DwaPlanner:
         state = _uv(costmap, pose)
         (goal,) = costmap.to_uv(np.array([target]))
         found, most = None, -math.inf
-        for body in self._outlines(costmap, state):
+        for body, stride in zip(self._outlines(costmap, state), (1.0, 0.3), strict=False):
             i, j, gain = best_motion(
                 costmap.field,
                 body,
-                self._rollout(dt, resolution),
+                self._rollout(dt, resolution, stride),
                 state,
                 speeds / resolution,
                 rates,
@@ -192,11 +192,12 @@ class DwaPlanner:
         rates = np.linspace(twist.angular - turn, twist.angular + turn, settings.rates)
         return np.linspace(low, high, settings.speeds), rates.clip(-limits.max_angular, limits.max_angular)
 
-    def _rollout(self, dt: float, resolution: float) -> Rollout:
+    def _rollout(self, dt: float, resolution: float, stride: float) -> Rollout:
         settings = self._settings
         return Rollout(
             settings.horizon,
             0.1,
+            stride,
             0.9 * self._spec.limits.linear_acceleration / resolution,
             0.9 * self._spec.limits.angular_acceleration,
             dt,

@@ -22,6 +22,8 @@ class Rollout(NamedTuple):
     """How far ahead [s]."""
     step: float
     """Longest time between two checked poses [s]."""
+    stride: float
+    """Farthest that a part of the outline moves between two checked poses."""
     deceleration: float
     """[cells/s²]"""
     angular_deceleration: float
@@ -78,7 +80,7 @@ def best_motion(
     """
     still = _judge(field, body, rollout, pose, now, 0.0, 0.0, target, path, obstacles, give, math.inf)
     best, found = math.inf, (-1, -1)
-    for i in range(len(speeds)):
+    for i in range(len(speeds) - 1, -1, -1):  # the fastest is most often best, and spares work on the others
         for j in range(len(rates)):
             score = _judge(field, body, rollout, pose, now, speeds[i], rates[j], target, path, obstacles, give, best)
             score += rollout.smoothness * abs(rates[j] - now[1])
@@ -109,28 +111,32 @@ def _judge(
     # The way while braking evenly is that of half the time at full speed.
     spin = 0.0 if body.disc else abs(rate)
     braking = rollout.reaction + max(abs(speed) / rollout.deceleration, spin / rollout.angular_deceleration) / 2
-    step = min(rollout.step, 1.0 / max(abs(speed) + spin * body.outer, 1e-9))  # no part moves more than a cell
+    step = min(rollout.step, rollout.stride / max(abs(speed) + spin * body.outer, 1e-9))
     count = 1 + math.ceil((rollout.horizon - rollout.reaction) / step)
     moving = speed != 0.0 or now[0] != 0.0 or not body.disc
     turn, chord = _arc((speed + now[0]) / 2, (rate + now[1]) / 2, rollout.reaction)
     cos, sin, cos_turn, sin_turn = math.cos(yaw + turn / 2), math.sin(yaw + turn / 2), 1.0, 0.0
     lack, done, elapsed = 0.0, 0, rollout.reaction
+    rows, cols = field.distance.shape
+    clear = body.outer + 0.7072  # no obstacle is near if that of the cell is this far
     for k in range(count):
         nu, nv, nyaw = u + chord * cos, v + chord * sin, yaw + turn
-        if moving and not _free(field, body, nu, nv, nyaw, obstacles, give):
+        row, col = math.floor(nv + 0.5), math.floor(nu + 0.5)
+        inside = 0 <= row < rows and 0 <= col < cols
+        room = float(field.distance[row, col]) if inside else 0.0
+        near = room < clear or len(obstacles) > 0
+        if moving and near and not _free(field, body, nu, nv, nyaw, obstacles, give):
             if elapsed <= braking + 1e-9 or k == 0:
                 return math.inf
             break
         u, v, yaw, done, elapsed = nu, nv, nyaw, k + 1, elapsed + step
-        lack += _lack(field, body, rollout.comfort, u, v)
+        missing = 1.0 - (room - body.inner) / rollout.comfort
+        if missing > 0.0:
+            lack += min(missing, 1.0) ** 2
         if k == 0:
             turn, chord = _arc(speed, rate, step)
-            cos, sin, cos_turn, sin_turn = (
-                math.cos(yaw + turn / 2),
-                math.sin(yaw + turn / 2),
-                math.cos(turn),
-                math.sin(turn),
-            )
+            cos, sin = math.cos(yaw + turn / 2), math.sin(yaw + turn / 2)
+            cos_turn, sin_turn = math.cos(turn), math.sin(turn)
         else:
             cos, sin = cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
     du, dv = target[0] - u, target[1] - v
@@ -148,15 +154,6 @@ def _arc(speed: float, rate: float, seconds: float) -> tuple[float, float]:
     turn = rate * seconds
     half = turn / 2
     return turn, speed * seconds * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
-
-
-@njit(cache=True)
-def _lack(field: DistanceField, body: Body, comfort: float, u: float, v: float) -> float:
-    """Return how much clearance is missing to be comfortable, 0 to 1, squared."""
-    rows, cols = field.distance.shape
-    row, col = min(max(round(v), 0), rows - 1), min(max(round(u), 0), cols - 1)
-    missing = 1.0 - (field.distance[row, col] - body.inner) / comfort
-    return min(missing, 1.0) ** 2 if missing > 0.0 else 0.0
 
 
 @njit(cache=True)
@@ -253,7 +250,7 @@ def unmapped(
             continue
         angle = sensor[2] + angle_min + i * angle_increment
         u, v = sensor[0] + ranges[i] * math.cos(angle), sensor[1] + ranges[i] * math.sin(angle)
-        row, col = round(v), round(u)
+        row, col = math.floor(v + 0.5), math.floor(u + 0.5)
         if not (0 <= row < rows and 0 <= col < cols) or field.distance[row, col] <= 1.5:
             continue
         if count > 0 and (points[count - 1, 0] - u) ** 2 + (points[count - 1, 1] - v) ** 2 < 0.5:

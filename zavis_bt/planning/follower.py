@@ -19,6 +19,7 @@ _LOST = 0.6  # so far off the path it is no longer the path [m]
 _PATIENCE = 0.5  # without an admissible motion for so long is blocked [s]
 _TURN = math.radians(60), math.radians(12)  # turn on the spot from one bearing to the target down to the other
 _TURN_EXACTLY = math.radians(4), math.radians(1)  # the same where the passage is narrow
+_SETTLED = 0.06  # turning slower than this the base may drive into a narrow passage [rad/s]
 _PATH_AHEAD = 1.1  # so much of the path counts for how far motions are off it [m]
 _LAG = 0.3  # a base that gets to the commanded velocity within this time follows it [s]
 _IDLE = 0.02  # motions slower than this lead nowhere [m/s], [rad/s]
@@ -150,7 +151,8 @@ class PathFollower:
         pose, twist = state.pose, self._moving(state.twist)
         obstacles = self._obstacles(pose, scan)
         turn_from, turn_to = _TURN_EXACTLY if aim.exact else _TURN
-        self._turning = abs(bearing) > (turn_to if self._turning else turn_from)
+        spinning = self._turning and aim.exact and abs(twist.angular) > _SETTLED
+        self._turning = abs(bearing) > (turn_to if self._turning else turn_from) or spinning
         if self._turning:
             turn = self._dwa.turn(pose, twist, pose.yaw + bearing, self._costmap, dt, obstacles)
             if turn is not None:

@@ -9,6 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from zavis_bt.planning.costmap import Costmap
+from zavis_bt.planning.dijkstra import UNREACHED, dijkstra
 from zavis_bt.planning.distance_field import DistanceField
 from zavis_bt.planning.grid_kernels import line_fits
 from zavis_bt.planning.steps import BORDER, steps_of
@@ -16,9 +17,6 @@ from zavis_bt.types import FloatArray, Pose2D
 
 ESCAPE = 0.3  # a start where the robot does not fit may be this far from where it does [m]
 
-_UNREACHED = 2**30
-# A step's length in 1/29 cell: 29 straight, 41 diagonal (√2 · 29 = 41.01), 65 a knight's move (√5 · 29 = 64.85).
-_STRAIGHT, _DIAGONAL, _KNIGHT = 29, 41, 65
 _SNAP = 1.5  # a point may be this far from the passable cell that stands for it [cells]
 
 
@@ -39,13 +37,10 @@ class GeodesicField:
         """
         self.start = start
         self._costmap = costmap
-        rows, cols = costmap.grid.shape
-        self._width = cols + 2 * BORDER
+        self._width = costmap.grid.shape[1] + 2 * BORDER
         cell = costmap.nearest_passable(start.x, start.y, ESCAPE)
         self._source = -1 if cell is None else (cell[0] + BORDER) * self._width + cell[1] + BORDER
-        passable = np.zeros((rows + 2 * BORDER, self._width), dtype=np.bool_)
-        passable[BORDER:-BORDER, BORDER:-BORDER] = costmap.passable
-        self._steps, self._parent = _dijkstra(passable.ravel(), self._width, self._source)
+        self._steps, self._parent = dijkstra(costmap.open_steps, steps_of(self._width), self._source)
         self._anchor = np.full(len(self._parent), -1, dtype=np.int32)
         self._taut = np.full(len(self._parent), math.inf)
 
@@ -53,8 +48,14 @@ class GeodesicField:
     def reachable(self) -> NDArray[np.bool_]:
         """(rows, cols) cells to which there is a path."""
         steps = self._steps.reshape(-1, self._width)[BORDER:-BORDER, BORDER:-BORDER]
-        reached: NDArray[np.bool_] = steps < _UNREACHED
+        reached: NDArray[np.bool_] = steps < UNREACHED
         return reached
+
+    def reaches(self, points: FloatArray) -> NDArray[np.bool_]:
+        """Tell to which of (n, 2) points [m] there is a path; cheaper than their distances."""
+        uv = self._costmap.to_uv(np.reshape(np.asarray(points, dtype=np.float64), (-1, 2)))
+        cells: NDArray[np.intp] = _cells_for(self._steps, self._width, self._costmap.grid.shape, uv)
+        return cells >= 0
 
     def distances(self, points: FloatArray) -> FloatArray:
         """Return the (n,) path lengths to (n, 2) points [m]; inf where there is no path."""
@@ -74,72 +75,6 @@ class GeodesicField:
             uv,
         )
         return lengths * resolution
-
-
-@njit(cache=True)
-def _dijkstra(passable: NDArray[np.bool_], width: int, source: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Return for each cell the length of the way in 1/29 cell and the cell before it; cells are flat indices.
-
-    Lengths are small integers, so a ring of buckets (R. Dial, 1969) is the queue; each holds a doubly linked list.
-    """
-    size = len(passable)
-    steps = np.full(size, _UNREACHED, dtype=np.int32)
-    parent = np.full(size, -1, dtype=np.int32)
-    if source < 0:
-        return steps, parent
-    after, before = np.full(size, -1, dtype=np.int32), np.full(size, -1, dtype=np.int32)
-    ring = _KNIGHT + 1
-    head = np.full(ring, -1, dtype=np.int32)
-    moves, _, _, first, second = steps_of(width)
-    steps[source], head[0] = 0, source
-    level, waiting = 0, 1
-    while waiting > 0:
-        slot = level % ring
-        while head[slot] >= 0:
-            cell = head[slot]
-            head[slot] = after[cell]
-            if head[slot] >= 0:
-                before[head[slot]] = -1
-            waiting -= 1
-            for i in range(16):
-                other = cell + moves[i]
-                if passable[other] and (i < 8 or (passable[cell + first[i]] and passable[cell + second[i]])):
-                    length = _STRAIGHT if i < 4 else _DIAGONAL if i < 8 else _KNIGHT
-                    waiting += _relax(steps, parent, after, before, head, cell, other, length)
-        level += 1
-    return steps, parent
-
-
-@njit(cache=True, inline="always")
-def _relax(
-    steps: NDArray[np.int32],
-    parent: NDArray[np.int32],
-    after: NDArray[np.int32],
-    before: NDArray[np.int32],
-    head: NDArray[np.int32],
-    cell: int,
-    other: int,
-    length: int,
-) -> int:
-    """Shorten the way to a cell if it can be; return the number of cells added to the queue."""
-    new, old = steps[cell] + length, steps[other]
-    if new >= old:
-        return 0
-    ring = len(head)
-    if old < _UNREACHED:  # move it from its bucket
-        if before[other] >= 0:
-            after[before[other]] = after[other]
-        else:
-            head[old % ring] = after[other]
-        if after[other] >= 0:
-            before[after[other]] = before[other]
-    slot = new % ring
-    steps[other], parent[other] = new, cell
-    after[other], before[other] = head[slot], -1
-    if head[slot] >= 0:
-        before[head[slot]] = other
-    head[slot] = other
-    return 0 if old < _UNREACHED else 1
 
 
 @njit(cache=True)
@@ -179,6 +114,15 @@ def _taut_lengths(
 
 
 @njit(cache=True)
+def _cells_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], points: FloatArray) -> NDArray[np.intp]:
+    """Return the (n,) reached cells that stand for (n, 2) points (u, v), -1 where there is none."""
+    cells = np.empty(len(points), dtype=np.intp)
+    for i in range(len(points)):
+        cells[i] = _cell_for(steps, width, shape, points[i, 0], points[i, 1])
+    return cells
+
+
+@njit(cache=True)
 def _cell_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], u: float, v: float) -> int:
     """Return the reached cell that stands for a point, or -1."""
     rows, cols = shape
@@ -187,7 +131,7 @@ def _cell_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], u: f
         for col in range(max(math.ceil(u - _SNAP), 0), min(math.floor(u + _SNAP), cols - 1) + 1):
             cell = (row + BORDER) * width + col + BORDER
             squared = (col - u) ** 2 + (row - v) ** 2
-            if steps[cell] < _UNREACHED and squared < best:
+            if steps[cell] < UNREACHED and squared < best:
                 best, found = squared, cell
     return found
 

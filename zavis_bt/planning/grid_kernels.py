@@ -85,10 +85,8 @@ def clearance(field: DistanceField, u: float, v: float) -> float:
 def body_fits(field: DistanceField, body: Body, u: float, v: float, yaw: float) -> bool:
     """Return whether the outline at a pose holds no centre of an obstacle cell."""
     rows, cols = field.distance.shape
-    row = min(max(round(v), 0), rows - 1)
-    col = min(max(round(u), 0), cols - 1)
-    inside = abs(row - v) <= 0.5 and abs(col - u) <= 0.5
-    if inside and field.distance[row, col] >= body.outer + _HALF_DIAGONAL:
+    row, col = math.floor(v + 0.5), math.floor(u + 0.5)
+    if 0 <= row < rows and 0 <= col < cols and field.distance[row, col] >= body.outer + _HALF_DIAGONAL:
         return True
     free = clearance(field, u, v)
     if free >= body.outer - _TOUCH:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from zavis_bt.types import FloatArray
@@ -14,30 +14,78 @@ BORDER = 2
 """Width of an impassable rim around the grid that spares the bounds checks: that of the longest step [cells]."""
 
 
-@njit(cache=True)
-def steps_of(width: int) -> tuple[NDArray[np.int64], FloatArray, FloatArray, NDArray[np.int64], NDArray[np.int64]]:
+class Steps(NamedTuple):
+    """Steps on a flat grid with a rim of `BORDER` cells, counter-clockwise from the x axis."""
+
+    moves: NDArray[np.int64]
+    """(16,) flat offsets."""
+    lengths: FloatArray
+    """(16,) [cells]"""
+    angles: FloatArray
+    """(16,) directions [rad]"""
+    first: NDArray[np.int64]
+    """(16,) flat offset of the first cell that a diagonal step or a knight's move passes; 0 for straight steps."""
+    second: NDArray[np.int64]
+    """(16,) that of the second."""
+
+
+def steps_of(width: int) -> Steps:
     """Return the steps on a flat grid.
 
     Args:
-        width: Cells in a row.
+        width: Cells in a row with the rim.
+    """
+    reach = range(-2, 3)
+    pairs = [(row, col) for row in reach for col in reach if abs(row) + abs(col) == 3 or max(abs(row), abs(col)) == 1]
+    pairs.sort(key=lambda pair: math.atan2(*pair) % math.tau)
+    passed = np.array([_passed(row, col, width) for row, col in pairs])
+    return Steps(
+        np.array([row * width + col for row, col in pairs]),
+        np.array([math.hypot(row, col) for row, col in pairs]),
+        np.array([math.atan2(row, col) for row, col in pairs]),
+        passed[:, 0].copy(),
+        passed[:, 1].copy(),
+    )
+
+
+def _passed(row: int, col: int, width: int) -> tuple[int, int]:
+    """Return the flat offsets of the cells that a step passes."""
+    down, right = (row > 0) - (row < 0), (col > 0) - (col < 0)
+    if row == 0 or col == 0:
+        return 0, 0
+    if abs(row) == abs(col):
+        return down * width, right
+    return (down * width if abs(row) == 2 else right), down * width + right
+
+
+def open_steps(passable: NDArray[np.bool_]) -> NDArray[np.uint16]:
+    """Return which steps lead from a cell to a passable one, over passable ones if it is a knight's move.
+
+    Args:
+        passable: (rows, cols).
 
     Returns:
-        For each of the 16 steps, straight ones first, then diagonal ones: the flat offset, the length [cells], the
-        direction [rad], and the offsets of the two cells that a diagonal step or a knight's move passes.
+        Flat grid with its rim: bit i stands for step i of `steps_of`; 0 for impassable cells.
     """
-    moves, first, second = np.empty(16, np.int64), np.zeros(16, np.int64), np.zeros(16, np.int64)
-    lengths, angles = np.empty(16), np.empty(16)
-    i = 0
-    for row, col in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-        moves[i], lengths[i], angles[i] = row * width + col, 1.0, math.atan2(row, col)
-        i += 1
-    for row, col in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-        moves[i], lengths[i], angles[i] = row * width + col, math.sqrt(2.0), math.atan2(row, col)
-        first[i], second[i] = row * width, col
-        i += 1
-    for row, col in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-        for down, right in ((2 * row, col), (row, 2 * col)):
-            moves[i], lengths[i], angles[i] = down * width + right, math.sqrt(5.0), math.atan2(down, right)
-            first[i], second[i] = (row * width if abs(down) == 2 else col), row * width + col
-            i += 1
-    return moves, lengths, angles, first, second
+    width = passable.shape[1] + 2 * BORDER
+    grid = np.pad(passable, BORDER).ravel()
+    steps = steps_of(width)
+    begin = BORDER * width
+    inner = slice(begin, len(grid) - begin)
+    found = np.zeros(len(grid), dtype=np.uint16)
+    bits = found[inner]
+    for i in range(16):
+        knight = steps.lengths[i] > 2.0
+        free = grid[inner] & _shifted(grid, inner, steps.moves[i])
+        if knight:
+            free &= _shifted(grid, inner, steps.first[i]) & _shifted(grid, inner, steps.second[i])
+        bits |= free.astype(np.uint16) << np.uint16(i)
+    return found
+
+
+def _shifted(grid: NDArray[np.bool_], inner: slice, offset: np.int64) -> NDArray[np.bool_]:
+    """Return the values at an offset from the inner cells; what wraps around falls on the rim and is not passable."""
+    begin, end = inner.start + int(offset), inner.stop + int(offset)
+    if begin >= 0 and end <= len(grid):
+        return grid[begin:end]
+    return np.roll(grid, -int(offset))[inner]

@@ -65,7 +65,7 @@ def _usable(landmark: Landmark, costmap: Costmap, field: GeodesicField, points: 
     """Where the robot fits, gets to and sees the landmark from."""
     usable = costmap.fits(points)
     usable[usable] &= _sees(landmark, costmap, points[usable])
-    usable[usable] &= np.isfinite(field.distances(points[usable]))
+    usable[usable] &= field.reaches(points[usable])
     if not costmap.footprint.disc:
         usable[usable] &= [costmap.pose_fits(_facing(landmark, point)) for point in points[usable]]
     return usable
