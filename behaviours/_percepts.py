@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from zavis_bt.mapping import Mapper, searched_landmarks
+from zavis_bt.mapping import Mapper
 from zavis_bt.perception import Perceiver
 from zavis_bt.protocols import Job, Jobs, Journal
 from zavis_bt.types import Candidate, Percept, RgbdFrame
@@ -17,12 +17,11 @@ class Percepts:
         self._perceiver, self._mapper, self._jobs, self._journal = perceiver, mapper, jobs, journal
         self._target = target
         self._pending: deque[Job[Percept]] = deque()
-        self._frames: list[RgbdFrame] = []
         self.candidates: list[Candidate] = []
 
     def submit(self, frame: RgbdFrame) -> None:
         """Hand a frame to the perceiver."""
-        self._frames.append(frame)
+        self._mapper.views.add(frame)
         self._pending.append(self._jobs.submit("detect", self._perceiver.perceive, frame, self._target))
 
     def poll(self) -> bool:
@@ -39,12 +38,6 @@ class Percepts:
         """Forget what is under way."""
         while self._pending:
             self._pending.popleft().cancel()
-
-    def mark_searched(self, max_distance: float) -> None:
-        """Count landmarks that the frames show from within a distance [m] as visited."""
-        semantic = self._mapper.semantic
-        for landmark in searched_landmarks(semantic.landmarks, self._frames, self._mapper.grid, max_distance):
-            semantic.mark_visited(landmark)
 
     def best_first(self) -> list[Candidate]:
         """Return the candidates, highest matching score first."""

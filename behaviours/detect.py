@@ -19,7 +19,6 @@ class Detect(Behaviour):
 
     target = In(str, "what to look for")
     frames = In(list[RgbdFrame], "frames to search; the camera's latest one if not given", default=None)
-    searched_within = In(float, "landmarks fully in view from nearer count as visited", unit="m", default=1.5, ge=0.0)
     candidates = Out(list[Candidate], "what may be the target, best first")
 
     def setup(self, *, robot: Robot, mapper: Mapper, perceiver: Perceiver, jobs: Jobs, journal: Journal) -> None:
@@ -40,7 +39,6 @@ class Detect(Behaviour):
             return self.fail("no frame from the camera")
         if not self._percepts.poll():
             return self.running("looking at the frames")
-        self._percepts.mark_searched(self.searched_within)
         self.candidates = self._percepts.best_first()
         if not self.candidates:
             return self.fail("not in sight")

@@ -25,4 +25,5 @@ class ForgetVisits(Behaviour):
             return self.fail("searched everything")
         self._used += 1
         self._mapper.semantic.forget_visits()
+        self._mapper.views.forget_search()
         return self.succeed(f"round {self._used + 1}")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from zavis_bt.mapping import Mapper
+from zavis_bt.mapping import Mapper, SemanticMap
 from zavis_bt.planning import Navigator, generate_viewpoints, make_order
 from zavis_bt.protocols import Job, Jobs, Journal, KnowledgePrior, Robot
 from zavis_bt.tree import Behaviour, In, Out, Status
@@ -27,6 +27,16 @@ class GenerateWaypoints(Behaviour):
     lambda_2 = In(float, "weight of the label's uncertainty λ2", unit="m/nat", default=0.05, ge=0.0)
     t_c = In(float, "skip landmarks less probable than this", default=0.2, ge=0.0, le=1.0)
     t_u = In(float, "skip landmarks more uncertain than this", unit="nat", default=2.5, ge=0.0)
+    searched_within = In(
+        float, "landmarks that were fully in view from nearer count as visited", unit="m", default=2.0, ge=0.0
+    )
+    persistence = In(
+        float,
+        "skip landmarks recognised in less than this share of the views that show them",
+        default=0.5,
+        ge=0.0,
+        le=1.0,
+    )
     waypoints = Out(list[Viewpoint], "viewpoints in visiting order")
 
     def setup(
@@ -45,8 +55,7 @@ class GenerateWaypoints(Behaviour):
 
     def initialise(self) -> None:
         """Start the work on what is known now."""
-        semantic = self._mapper.semantic
-        landmarks = [landmark for landmark in semantic.landmarks if landmark.id not in semantic.visited]
+        landmarks = self._unvisited(self._mapper.semantic)
         pose = self._robot.base.state().pose
         self._job: Job[tuple[int, list[Viewpoint]]] = self._jobs.submit("waypoints", self._plan, pose, landmarks)
 
@@ -64,6 +73,14 @@ class GenerateWaypoints(Behaviour):
     def terminate(self, new_status: Status) -> None:
         """Drop the work."""
         self._job.cancel()
+
+    def _unvisited(self, semantic: SemanticMap) -> list[Landmark]:
+        """Return the landmarks that exist for all we know and have not been searched."""
+        landmarks, grid, views = semantic.landmarks, self._mapper.grid, self._mapper.views
+        done = semantic.visited | views.searched(landmarks, grid, self.searched_within)
+        left = [each for each in landmarks if each.id not in done]
+        chances = views.chances(left, grid)
+        return [each for each, n in zip(left, chances, strict=True) if each.views >= self.persistence * n]
 
     def _plan(self, pose: Pose2D, landmarks: list[Landmark]) -> tuple[int, list[Viewpoint]]:
         costmap, field = self._navigator.costmap, self._navigator.field(pose)

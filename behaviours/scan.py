@@ -25,9 +25,8 @@ class Scan(Behaviour):
 
     target = In(str, "what to look for on the way")
     turns = In(float, "share of a full turn to cover", default=1.0, gt=0.0, le=1.0)
-    tilts = In(list[float], "tilt of each pass of the camera, up positive", unit="rad", default=[-0.2])
-    overlap = In(float, "share that neighbouring frames have in common", default=0.15, ge=0.0, lt=0.9)
-    searched_within = In(float, "landmarks fully in view from nearer count as visited", unit="m", default=1.5, ge=0.0)
+    tilts = In(list[float], "tilt of each pass of the camera, up positive", unit="rad", default=[-0.35, 0.0])
+    overlap = In(float, "share that neighbouring frames have in common", default=0.5, ge=0.0, lt=0.9)
     candidates = Out(list[Candidate], "what may be the target, best first")
     landmarks = Out(int, "landmarks on the semantic map after the scan")
 
@@ -88,7 +87,6 @@ class Scan(Behaviour):
         return self._navigator.can_turn(pose)
 
     def _finish(self) -> Status:
-        self._percepts.mark_searched(self.searched_within)
         self.candidates = self._percepts.best_first()
         self.landmarks = len(self._mapper.semantic.landmarks)
         self._journal.record("scan", landmarks=self.landmarks, candidates=len(self.candidates))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from zavis_bt.mapping.occupancy import OccupancyGrid
 from zavis_bt.mapping.semantic import SemanticMap
+from zavis_bt.mapping.views import Views
 from zavis_bt.types import GridMap, LaserScan, Pose2D, RobotSpec, wrap_angle
 
 
@@ -43,6 +44,8 @@ class Mapper:
             resolution, max_range=self._settings.max_range, no_return_is_free=self._settings.no_return_is_free
         )
         self._semantic = SemanticMap()
+        self.views = Views()
+        """From where the camera looked."""
         self._fused: tuple[Pose2D, float] | None = None
 
     @property
