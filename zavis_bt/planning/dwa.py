@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from zavis_bt.planning.costmap import Costmap
-from zavis_bt.planning.dwa_kernels import Rollout, best_motion, motion_fits, unmapped
+from zavis_bt.planning.dwa_kernels import Rollout, best_motion, motion_fits
 from zavis_bt.planning.grid_kernels import Body, body_fits, largest_fit
+from zavis_bt.planning.scan_obstacles import deepest, unmapped
 from zavis_bt.types import FloatArray, LaserScan, Pose2D, RobotSpec, Twist2D
 
-_CORNER = 0.003  # [m]
+_CORNER = 0.003  # margin for the corners of a rectangle where there is no room for more [m]
+_BRAKING = 0.7  # share of the deceleration that is planned with to halt at a heading
+_SKIN = 0.01  # depth by which scan points may get deeper than they are [cells]
 NO_OBSTACLES: FloatArray = np.empty((0, 2))
 
 
@@ -81,7 +84,6 @@ class DwaPlanner:
             scan.angle_increment,
             scan.range_min / resolution,
             reach / resolution,
-            self._settings.give / resolution,
         )
         return costmap.to_points(points)
 
@@ -117,6 +119,8 @@ class DwaPlanner:
         state = _uv(costmap, pose)
         (goal,) = costmap.to_uv(np.array([target]))
         found, most = None, -math.inf
+        points = costmap.to_uv(obstacles)
+        give = self._give(costmap, state, points)
         for body, stride in zip(self._outlines(costmap, state), (1.0, 0.3), strict=False):
             i, j, gain = best_motion(
                 costmap.field,
@@ -128,8 +132,8 @@ class DwaPlanner:
                 (twist.linear / resolution, twist.angular),
                 (goal[0], goal[1]),
                 costmap.to_uv(path),
-                costmap.to_uv(obstacles),
-                self._settings.give / resolution,
+                points,
+                give,
             )
             if i >= 0 and gain > most:
                 found, most = Twist2D(float(speeds[i]), float(rates[j])), gain
@@ -163,20 +167,24 @@ class DwaPlanner:
         change = self._spec.limits.linear_acceleration * dt
         speed = math.copysign(max(abs(twist.linear) - change, 0.0), twist.linear)
         state, resolution = _uv(costmap, pose), costmap.grid.resolution
-        uv, give = costmap.to_uv(obstacles), self._settings.give / resolution
+        points = costmap.to_uv(obstacles)
+        give = self._give(costmap, state, points)
         for body in self._outlines(costmap, state):
             for angle in (error, error - math.copysign(math.tau, error)):  # the long way where the short one is barred
-                if not motion_fits(costmap.field, body, state, 0.0, angle, 1.0, uv, give):
+                if not motion_fits(costmap.field, body, state, 0.0, angle, 1.0, points, give):
                     continue
                 rate = self._turn_rate(angle, twist.angular, dt)
-                if speed == 0.0 or motion_fits(costmap.field, body, state, speed / resolution, rate, 3 * dt, uv, give):
+                if speed == 0.0 or motion_fits(
+                    costmap.field, body, state, speed / resolution, rate, 3 * dt, points, give
+                ):
                     return Twist2D(speed, rate)
         return Twist2D() if abs(twist.linear) > 1e-3 else None
 
     def _turn_rate(self, error: float, now: float, dt: float) -> float:
-        """Turn rate from which the base still halts at the heading, and which it can reach by now [rad/s]."""
+        """Turn rate from which the base, commanded once more, still halts at the heading; reachable by now [rad/s]."""
         limits = self._spec.limits
-        halting = math.sqrt(2 * 0.7 * limits.angular_acceleration * abs(error))
+        slowing = _BRAKING * limits.angular_acceleration
+        halting = slowing * (math.sqrt(dt * dt + 2 * abs(error) / slowing) - dt)
         rate = math.copysign(min(halting, limits.max_angular, abs(error) / (2 * dt)), error)
         change = limits.angular_acceleration * dt
         return min(max(rate, now - change), now + change)
@@ -207,6 +215,10 @@ class DwaPlanner:
             settings.comfort / resolution,
             settings.smoothness / resolution,
         )
+
+    def _give(self, costmap: Costmap, state: tuple[float, float, float], points: FloatArray) -> float:
+        """How deep scan points may reach into the outline [cells]: no deeper than they do already, if they do."""
+        return max(self._settings.give / costmap.grid.resolution, float(deepest(costmap.body, state, points)) + _SKIN)
 
     def _outlines(self, costmap: Costmap, state: tuple[float, float, float]) -> tuple[Body, ...]:
         """The outlines to try: with the margin, as it is or nearly, or shrunk to what is free now."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
 from numba import njit
 
 from zavis_bt.planning.distance_field import DistanceField
@@ -58,8 +57,9 @@ def best_motion(
 ) -> tuple[int, int, float]:
     """Find the best speed [cells/s] and turn rate [rad/s].
 
-    A motion is admissible if the outline stays free on its arc as far as it takes to brake. It is judged by where it
-    leads within the horizon, or before it would collide: near the target, facing it, near the path, off obstacles.
+    A motion is admissible if the outline stays free until it is carried out and while the base brakes from it. It is
+    judged by where its arc leads within the horizon, or before it would collide: near the target, facing it, near the
+    path, off obstacles.
 
     Args:
         field: Distances to mapped obstacles.
@@ -108,15 +108,13 @@ def _judge(
     u, v, yaw = pose
     if math.hypot(target[0] - u, target[1] - v) - max(speed, now[0]) * rollout.horizon > best:
         return math.inf  # cannot get near enough to the target to be the best
-    # The way while braking evenly is that of half the time at full speed.
     spin = 0.0 if body.disc else abs(rate)
-    braking = rollout.reaction + max(abs(speed) / rollout.deceleration, spin / rollout.angular_deceleration) / 2
     step = min(rollout.step, rollout.stride / max(abs(speed) + spin * body.outer, 1e-9))
     count = 1 + math.ceil((rollout.horizon - rollout.reaction) / step)
     moving = speed != 0.0 or now[0] != 0.0 or not body.disc
     turn, chord = _arc((speed + now[0]) / 2, (rate + now[1]) / 2, rollout.reaction)
     cos, sin, cos_turn, sin_turn = math.cos(yaw + turn / 2), math.sin(yaw + turn / 2), 1.0, 0.0
-    lack, done, elapsed = 0.0, 0, rollout.reaction
+    lack, done = 0.0, 0
     rows, cols = field.distance.shape
     clear = body.outer + 0.7072  # no obstacle is near if that of the cell is this far
     for k in range(count):
@@ -126,10 +124,10 @@ def _judge(
         room = float(field.distance[row, col]) if inside else 0.0
         near = room < clear or len(obstacles) > 0
         if moving and near and not _free(field, body, nu, nv, nyaw, obstacles, give):
-            if elapsed <= braking + 1e-9 or k == 0:
+            if k == 0:
                 return math.inf
             break
-        u, v, yaw, done, elapsed = nu, nv, nyaw, k + 1, elapsed + step
+        u, v, yaw, done = nu, nv, nyaw, k + 1
         missing = 1.0 - (room - body.inner) / rollout.comfort
         if missing > 0.0:
             lack += min(missing, 1.0) ** 2
@@ -145,7 +143,43 @@ def _judge(
     off = math.tau * abs(off - round(off))
     score = distance + rollout.heading_weight * off * min(1.0, distance / 6.0)
     score += rollout.path_weight * _path_distance(path, u, v)
-    return score + rollout.clearance_weight * lack / max(done, 1)
+    score += rollout.clearance_weight * lack / max(done, 1)
+    if score < best and moving and (lack > 0.0 or len(obstacles) > 0):  # near obstacles, and worth the work
+        return score if _can_brake(field, body, rollout, pose, now, speed, rate, obstacles, give) else math.inf
+    return score
+
+
+@njit(cache=True)
+def _can_brake(
+    field: DistanceField,
+    body: Body,
+    rollout: Rollout,
+    pose: tuple[float, float, float],
+    now: tuple[float, float],
+    speed: float,
+    rate: float,
+    obstacles: FloatArray,
+    give: float,
+) -> bool:
+    """Return whether the outline stays free if the motion is commanded once, and then to stand still."""
+    u, v, yaw = pose
+    seconds, linear, angular = rollout.reaction, (speed + now[0]) / 2, (rate + now[1]) / 2
+    spin = 0.0 if body.disc else body.outer
+    while True:
+        count = max(math.ceil((abs(linear) + spin * abs(angular)) * seconds / rollout.stride), 1)
+        turn, chord = _arc(linear, angular, seconds / count)
+        for _ in range(count):
+            u, v = u + chord * math.cos(yaw + turn / 2), v + chord * math.sin(yaw + turn / 2)
+            yaw += turn
+            if not _free(field, body, u, v, yaw, obstacles, give):
+                return False
+        if speed == 0.0 and (rate == 0.0 or body.disc):
+            return True
+        seconds = rollout.step
+        slower = max(abs(speed) - rollout.deceleration * seconds, 0.0)
+        calmer = math.copysign(max(abs(rate) - rollout.angular_deceleration * seconds, 0.0), rate)
+        linear, angular = (speed + slower) / 2, (rate + calmer) / 2
+        speed, rate = slower, calmer
 
 
 @njit(cache=True, inline="always")
@@ -162,7 +196,7 @@ def _free(field: DistanceField, body: Body, u: float, v: float, yaw: float, obst
         return False
     if len(obstacles) == 0:
         return True
-    reach = (body.outer - give) ** 2
+    reach = max(body.outer - give, 0.0) ** 2
     cos, sin = math.cos(yaw), math.sin(yaw)
     for i in range(len(obstacles)):
         du, dv = obstacles[i, 0] - u, obstacles[i, 1] - v
@@ -212,50 +246,3 @@ def _path_distance(path: FloatArray, u: float, v: float) -> float:
         share = min(max(share, 0.0), 1.0)
         best = min(best, (path[i, 0] + share * du - u) ** 2 + (path[i, 1] + share * dv - v) ** 2)
     return math.sqrt(best) if len(path) > 1 else 0.0
-
-
-@njit(cache=True)
-def unmapped(
-    field: DistanceField,
-    body: Body,
-    pose: tuple[float, float, float],
-    sensor: tuple[float, float, float],
-    ranges: FloatArray,
-    angle_min: float,
-    angle_increment: float,
-    range_min: float,
-    reach: float,
-    give: float,
-) -> FloatArray:
-    """Return the (n, 2) u, v of scan points within reach that no obstacle cell of the map explains.
-
-    Points of the same cell count once, points inside of the robot's outline not at all.
-
-    Args:
-        field: Distances to mapped obstacles.
-        body: The outline.
-        pose: u, v, yaw of the robot.
-        sensor: u, v, yaw of the sensor.
-        ranges: (n,) [cells].
-        angle_min: Direction of the first beam [rad].
-        angle_increment: [rad]
-        range_min: Nearer returns are broken [cells].
-        reach: Farther ones do not matter [cells].
-        give: How deep points may reach into the outline.
-    """
-    rows, cols = field.distance.shape
-    points, count = np.empty((64, 2)), 0
-    for i in range(len(ranges)):
-        if not range_min <= ranges[i] <= reach:
-            continue
-        angle = sensor[2] + angle_min + i * angle_increment
-        u, v = sensor[0] + ranges[i] * math.cos(angle), sensor[1] + ranges[i] * math.sin(angle)
-        row, col = math.floor(v + 0.5), math.floor(u + 0.5)
-        if not (0 <= row < rows and 0 <= col < cols) or field.distance[row, col] <= 1.5:
-            continue
-        if count > 0 and (points[count - 1, 0] - u) ** 2 + (points[count - 1, 1] - v) ** 2 < 0.5:
-            continue
-        points[count, 0], points[count, 1] = u, v
-        if count < 63 and _free(field, body, pose[0], pose[1], pose[2], points[count : count + 1], give):
-            count += 1
-    return points[:count].copy()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -58,7 +57,7 @@ def _trouble(costmap: Costmap, pose: Pose2D) -> str:
         return "outside of the map"
     if costmap.barred[row, col]:
         return "in unknown space"
-    distance = float(costmap.clearance(np.array([[pose.x, pose.y]]))[0])
-    if distance < costmap.grid.resolution / math.sqrt(2):
+    if costmap.field.obstacle[row, col]:
         return "in an obstacle"
+    distance = float(costmap.clearance(np.array([[pose.x, pose.y]]))[0])
     return f"too close to an obstacle ({distance:.2f} m, the robot needs {costmap.radius:.2f} m)"

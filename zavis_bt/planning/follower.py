@@ -83,6 +83,8 @@ class PathFollower:
         self._guide = Guide(spec, self._track)
         self._costmap, self._checked_at = costmaps.current, -math.inf
         self._guide.use(self._costmap)
+        # A start where the robot does not fit is left on the first line of the path.
+        self._escape = 0.0 if self._costmap.path_fits(self._track.points[:2]) else float(self._track.arc[1])
         self._last: BaseState | None = None
         self._command = Twist2D()
         self._turning = self._at_goal = False
@@ -143,7 +145,7 @@ class PathFollower:
             return True
         self._costmap, self._checked_at = self._costmaps.current, stamp
         self._guide.use(self._costmap)
-        begin = self._track.position + self._costmap.radius
+        begin = max(self._track.position + self._costmap.radius, self._escape)
         rest = self._track.stretch(min(begin, self._track.length), self._track.length)
         return self._costmap.path_fits(rest)
 

@@ -67,7 +67,9 @@ def _usable(landmark: Landmark, costmap: Costmap, field: GeodesicField, points: 
     usable[usable] &= _sees(landmark, costmap, points[usable])
     usable[usable] &= field.reaches(points[usable])
     if not costmap.footprint.disc:
-        usable[usable] &= np.array([costmap.pose_fits(_facing(landmark, point)) for point in points[usable]], dtype=bool)
+        usable[usable] &= np.array(
+            [costmap.pose_fits(_facing(landmark, point)) for point in points[usable]], dtype=bool
+        )
     return usable
 
 
