@@ -27,8 +27,9 @@ class GenerateWaypoints(Behaviour):
     lambda_2 = In(float, "weight of the label's uncertainty λ2", unit="m/nat", default=0.05, ge=0.0)
     t_c = In(float, "skip landmarks less probable than this", default=0.2, ge=0.0, le=1.0)
     t_u = In(float, "skip landmarks more uncertain than this", unit="nat", default=2.5, ge=0.0)
+    reach = In(float, "leave landmarks farther than this by path for later", unit="m", default=1000.0, gt=0.0)
     searched_within = In(
-        float, "landmarks that were fully in view from nearer count as visited", unit="m", default=2.0, ge=0.0
+        float, "landmarks that were fully in view from nearer count as visited", unit="m", default=2.5, ge=0.0
     )
     persistence = In(
         float,
@@ -87,7 +88,11 @@ class GenerateWaypoints(Behaviour):
         owners: list[Landmark] = []
         viewpoints: list[Viewpoint] = []
         for landmark in landmarks:
-            found = generate_viewpoints(landmark, costmap, field)
+            found = [
+                view
+                for view in generate_viewpoints(landmark, costmap, field)
+                if field.distances(np.array([[view.pose.x, view.pose.y]]))[0] <= self.reach
+            ]
             viewpoints += found
             owners += [landmark] * len(found)
         if not viewpoints:
