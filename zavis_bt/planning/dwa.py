@@ -15,6 +15,7 @@ from zavis_bt.types import FloatArray, LaserScan, Pose2D, RobotSpec, Twist2D
 
 _CORNER = 0.003  # margin for the corners of a rectangle where there is no room for more [m]
 _BRAKING = 0.7  # share of the deceleration that is planned with to halt at a heading
+_PREFERENCE = 0.01  # a motion with less margin must be better by this [m]
 _SKIN = 0.01  # depth by which scan points may get deeper than they are [cells]
 NO_OBSTACLES: FloatArray = np.empty((0, 2))
 
@@ -43,8 +44,9 @@ class DwaSettings:
     """Clearance beyond the outline from which more is not better [m]."""
     smoothness: float = 0.01
     """[m per rad/s]"""
-    worthwhile: float = 0.01
-    """A motion that keeps the margin is preferred if it is better than to stand still by so much [m]."""
+    worthwhile: float = 0.4
+    """A motion that keeps the margin is taken at once if it is better than to stand still by this share of the way
+    that the base could go within the horizon."""
 
 
 class DwaPlanner:
@@ -135,9 +137,9 @@ class DwaPlanner:
                 points,
                 give,
             )
-            if i >= 0 and gain > most:
-                found, most = Twist2D(float(speeds[i]), float(rates[j])), gain
-            if most * resolution > self._settings.worthwhile:
+            if i >= 0 and gain * resolution > most:
+                found, most = Twist2D(float(speeds[i]), float(rates[j])), gain * resolution + _PREFERENCE
+            if most > self._settings.worthwhile * speeds[-1] * self._settings.horizon:
                 break
         return found
 
