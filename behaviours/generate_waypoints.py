@@ -53,6 +53,7 @@ class GenerateWaypoints(Behaviour):
         """Take the resources."""
         self._robot, self._mapper, self._navigator = robot, mapper, navigator
         self._prior, self._jobs, self._journal = prior, jobs, journal
+        self._order = make_order(self.order)  # an unknown name is told before anything moves
 
     def initialise(self) -> None:
         """Start the work on what is known now."""
@@ -99,9 +100,7 @@ class GenerateWaypoints(Behaviour):
             return 0, []
         prior = self._prior.probability(self.target, [owner.label for owner in owners])
         uncertainty = np.array([owner.entropy for owner in owners])
-        indices = make_order(self.order)(
-            pose, viewpoints, prior, uncertainty, self._distances(viewpoints), **self._weights()
-        )
+        indices = self._order(pose, viewpoints, prior, uncertainty, self._distances(viewpoints), **self._weights())
         return len(viewpoints), [viewpoints[i] for i in indices]
 
     def _weights(self) -> dict[str, float]:

@@ -33,7 +33,7 @@ _TINY = 1e-12  # stands for a direction component of zero, so that divisions sta
 _TOUCHING = 1e-6  # relative distance below which two surfaces coincide
 
 # Called once a ray: inlined, or counting references to their arrays would take longer than the work.
-_INLINE = {"cache": True, "error_model": "numpy", "inline": "always"}
+_kernel = njit(cache=True, error_model="numpy", inline="always")
 
 IntArray = NDArray[np.int32]
 Ray = tuple[float, float, float, float, float, float]
@@ -58,7 +58,7 @@ class Solids(NamedTuple):
     """(4,) outer corner x, y of cell [0, 0], side of a cell, height of the walls [m]."""
 
 
-@njit(**_INLINE)
+@_kernel
 def box_entry(boxes: FloatArray, box: int, ray: Ray) -> tuple[float, int]:
     """Return where a ray enters a box and through which face; (inf, -1) if it misses or starts inside."""
     cos, sin = boxes[box, COS], boxes[box, SIN]
@@ -84,7 +84,7 @@ def box_entry(boxes: FloatArray, box: int, ray: Ray) -> tuple[float, int]:
     return entry, face
 
 
-@njit(**_INLINE)
+@_kernel
 def wall_entry(clearance: IntArray, room: FloatArray, ray: Ray, limit: float) -> tuple[float, int]:
     """Return where a ray first meets a wall before ``limit``, and the face; (inf, -1) if it does not.
 
@@ -156,7 +156,7 @@ def _seen_through_hulls(hulls: IntArray, hits: IntArray, entries: FloatArray, co
     return seen
 
 
-@njit(**_INLINE)
+@_kernel
 def first_hit(
     boxes: FloatArray,
     hulls: IntArray,

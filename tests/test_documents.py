@@ -43,7 +43,7 @@ def test_scalars_follow_the_core_schema(tmp_path: Path) -> None:
 
 
 VALUES = st.recursive(
-    st.none() | st.booleans() | st.integers(-99999, 99999) | st.floats(-1e6, 1e6) | st.text("ab :-#'\"é", max_size=6),
+    st.none() | st.booleans() | st.integers(-99999, 99999) | st.floats(-1e6, 1e6) | st.text("ab -#'\"é", max_size=6),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text("abc", min_size=1), inner, max_size=4),
     max_leaves=12,
 )

@@ -9,7 +9,6 @@ from typing import Any
 
 from sim.oracle import Oracle
 from sim.perception import SimDetector, SimMatcher
-
 from sim.simulation import Simulation
 from sim.targets import instances_named
 from sim.world import World

@@ -46,7 +46,7 @@ def free_distance(points: FloatArray, twist: Twist2D, spec: RobotSpec, tolerance
         return math.inf
     forward = math.copysign(1.0, twist.linear)
     x, y = points[:, 0] * forward, points[:, 1]
-    curvature = twist.angular / twist.linear * forward  # seen along the direction of motion
+    curvature = twist.angular / twist.linear  # of the path, seen along the direction of motion
     half_width = spec.footprint.width / 2 - tolerance
     reach = spec.footprint.length / 2 + forward * spec.footprint.centre_x
     if abs(curvature) < 1e-3:
