@@ -6,10 +6,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from zavis_bt.errors import InputError, did_you_mean
-from zavis_bt.types import Pose2D, RobotSpec
+from zavis_bt.types import GridMap, Pose2D, RobotSpec
+
+if TYPE_CHECKING:
+    from zavis_bt.mapping import SemanticMap
 
 
 def resolve_tree(name: str) -> Path:
@@ -40,6 +43,19 @@ def _resolve(name: str, what: str, built_in: Mapping[str, Path]) -> Path:
     if Path(name).is_file():
         return Path(name)
     raise InputError(f"{name}: no such file, and no built-in {what} of that name{did_you_mean(name, built_in)}")
+
+
+def load_maps(path: Path) -> tuple[GridMap, SemanticMap | None]:
+    """Return the maps of a run folder or beside a ``map.yaml``: the grid, and the landmarks if they were saved.
+
+    Raises:
+        InputError: There is no map, or it is damaged.
+    """
+    from zavis_bt.mapping import SemanticMap, load_map
+
+    file = path / "map.yaml" if path.is_dir() else path
+    semantic = file.parent / "semantic_map.json"
+    return load_map(file), SemanticMap.load(semantic) if semantic.is_file() else None
 
 
 def parse_start(text: str) -> Pose2D:

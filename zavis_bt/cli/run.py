@@ -41,6 +41,7 @@ def run(
     ] = False,
     view: Annotated[bool, typer.Option("--view", help="Show map, robot and tree live in the browser.")] = False,
     record: Annotated[Path | None, typer.Option(help="Folder for the run; new one under runs/ if not given.")] = None,
+    resume: Annotated[Path | None, typer.Option(help="Run folder or map.yaml to go on from.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as one line of JSON.")] = False,
 ) -> None:
     """Run a mission and say how it went. Exit code 4 if the target was not found."""
@@ -65,7 +66,7 @@ def run(
         settings=MissionSettings(planner=planner, max_travel=max_travel, max_seconds=max_seconds),
     )
     pose = None if start is None else parse_start(start)
-    result, folder = run_mission(choices, world, target, seed=seed, start=pose, record=record, view=view)
+    result, folder = run_mission(choices, world, target, seed=seed, start=pose, record=record, view=view, resume=resume)
     if as_json:
         print(json.dumps(asdict(result)))
     else:
@@ -83,6 +84,7 @@ def run_mission(
     start: Pose2D | None,
     record: Path | None,
     view: bool,
+    resume: Path | None = None,
 ) -> tuple[MissionResult, Path]:
     """Run a mission in a simulated world, recorded, and shown if asked for.
 
@@ -94,6 +96,7 @@ def run_mission(
 
     from sim.world_file import load_world
     from sim.worlds import resolve_world
+    from zavis_bt.cli.files import load_maps
     from zavis_bt.cli.simulate import SimulatedMission
     from zavis_bt.cli.viewing import viewer
     from zavis_bt.errors import InputError
@@ -117,16 +120,22 @@ def run_mission(
         "inputs": dict(choices.inputs),
         "robot": choices.robot.name,
         "planner": choices.settings.planner,
+        "resume": None if resume is None else str(resume),
     }
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s", stream=sys.stderr)
     task = Task(id=f"{place.name}:{target}", method=choices.method, seed=seed)
     mission = SimulatedMission(choices, place, pose, target, task, pictures=folder / "questions")
+    if resume is not None:
+        mission.mission.resume(*load_maps(resume))
     recorder = RunRecorder(folder, settings)
     mission.mission.observe(recorder, recorder.on_event)
-    with viewer(view) as viewers:
+    with viewer(view, f"find the {target}") as viewers:
         for observer in viewers:
             mission.mission.observe(observer)
-        return mission.run(), folder
+        result = mission.run()
+    for problem in recorder.problems:
+        print(f"not recorded: {problem}", file=sys.stderr)
+    return result, folder
 
 
 def report(result: MissionResult, folder: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -110,21 +110,21 @@ class SimulatedMission:
             prior=make_prior(choices.prior),
             human=_human(choices.confirm, Oracle(wanted), self.simulation, pictures),
             rng=self.simulation.rng("planning"),
+            details=lambda: {"collisions": self.simulation.collisions},
         )
         self.mission = Mission(tree, parts, search, task, settings=choices.settings)
 
     def run(self) -> MissionResult:
-        """Run to the end; the result tells the collisions as well.
+        """Run to the end.
 
         Raises:
             KeyboardInterrupt: Ctrl-C; everything is stopped and recorded.
         """
         try:
-            result = self.mission.run()
+            return self.mission.run()
         finally:
             self.simulation.robot.close()
             self._jobs.close()
-        return replace(result, details={**result.details, "collisions": self.simulation.collisions})
 
 
 def _human(confirm: str, oracle: Oracle, simulation: Simulation, pictures: Path) -> Human:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import logging
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from zavis_bt.mapping import Mapper
+from zavis_bt.mapping import Mapper, SemanticMap
 from zavis_bt.mission.dialogue import Dialogue
 from zavis_bt.mission.journal import MissionJournal
 from zavis_bt.mission.safety import SafeRobot
@@ -61,6 +62,8 @@ class Parts:
     prior: KnowledgePrior
     human: Human
     rng: np.random.Generator
+    details: Callable[[], Mapping[str, Any]] = dict
+    """Further counts for the result that only whoever plays the robot knows."""
 
 
 class Mission:
@@ -179,6 +182,14 @@ class Mission:
         if events is not None:
             self.journal.sinks.append(events)
 
+    def resume(self, grid: GridMap, semantic: SemanticMap | None = None) -> None:
+        """Begin with the maps of an earlier run; to be called before the run.
+
+        Raises:
+            InputError: The map has another resolution.
+        """
+        self._mapper.seed(grid, semantic)
+
     # -- the run -------------------------------------------------------------------------------------------------
 
     def run(self) -> MissionResult:
@@ -232,7 +243,12 @@ class Mission:
             sim_seconds=self._parts.clock.now() - self._started,
             wall_seconds=wall_seconds,
             seed=self._task.seed,
-            details={"scans": counts["scan"], "frontiers": counts["frontier"], "safety_stops": counts["safety"]},
+            details={
+                "scans": counts["scan"],
+                "frontiers": counts["frontier"],
+                "safety_stops": counts["safety"],
+                **self._parts.details(),
+            },
         )
 
     # -- what observers see --------------------------------------------------------------------------------------
