@@ -79,3 +79,18 @@ def test_a_finished_benchmark_is_not_run_again(episodes, tmp_path):
     before = (tmp_path / "out" / "results.jsonl").read_bytes()
     bench(episodes, "-m", "frontier", "-o", tmp_path / "out")
     assert (tmp_path / "out" / "results.jsonl").read_bytes() == before
+
+
+def test_a_method_may_be_added_later_but_an_edited_tree_is_another_benchmark(episodes, tmp_path):
+    tree = tmp_path / "mine" / "tree.yaml"
+    tree.parent.mkdir()
+    tree.write_text("bt: 1\nroot: t\ntrees:\n  t: {params: {target: str}, do: {fail: $target}}\n")
+    bench(episodes, "-m", "frontier", "-o", tmp_path / "out")
+    bench(episodes, "-m", "frontier", "-m", tree, "-o", tmp_path / "out")
+    assert len(load_results(tmp_path / "out" / "results.jsonl")) == 4
+    tree.write_text(tree.read_text() + "# edited\n")
+    again = CliRunner().invoke(
+        app, ["bench", str(episodes), "-m", "frontier", "-m", str(tree), "-o", str(tmp_path / "out")]
+    )
+    assert again.exit_code == 1
+    assert "another folder" in again.output

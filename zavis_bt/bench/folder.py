@@ -107,27 +107,42 @@ def _locked(path: Path) -> int:
 
 
 def _check_settings(path: Path, settings: Mapping[str, Any]) -> None:
-    """Compare the settings with those in the folder, or put them there if it is new."""
+    """Compare the settings with those in the folder, and put there what is new.
+
+    A setting that is itself a mapping may gain entries, as a benchmark gains methods.
+    """
     file = path / "bench.json"
     wanted = json.loads(json.dumps(dict(settings)))
-    if not file.exists():
-        if any(path.iterdir()):
-            raise InputError(f"{path}: is not empty and not a benchmark's folder (name a new one)")
-        text = json.dumps({"format": _FORMAT, "settings": wanted}, indent=2, ensure_ascii=False)
-        partial = file.with_suffix(".partial")
-        partial.write_text(text + "\n", encoding="utf-8")
-        partial.replace(file)
-        return
+    if file.exists():
+        found = _read_settings(file)
+        for key in sorted(found.keys() | wanted.keys()):
+            wanted[key] = _agreed(path, key, found.get(key), wanted.get(key))
+    elif any(path.iterdir()):
+        raise InputError(f"{path}: is not empty and not a benchmark's folder (name a new one)")
+    text = json.dumps({"format": _FORMAT, "settings": wanted}, indent=2, ensure_ascii=False)
+    partial = file.with_suffix(".partial")
+    partial.write_text(text + "\n", encoding="utf-8")
+    partial.replace(file)
+
+
+def _read_settings(file: Path) -> dict[str, Any]:
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         found = content["settings"] if content["format"] == _FORMAT else None
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(f"{file}: is damaged (name another folder)") from error
-    if found is None:
+    if not isinstance(found, dict):
         raise InputError(f"{file}: is of another version of zavis (name another folder)")
-    for key in sorted(found.keys() | wanted.keys()):
-        if found.get(key) != wanted.get(key):
-            raise InputError(
-                f"{path}: was begun with {key} = {json.dumps(found.get(key))}, not {json.dumps(wanted.get(key))} "
-                "(use the same settings to resume, or name another folder)"
-            )
+    return found
+
+
+def _agreed(path: Path, key: str, found: Any, wanted: Any) -> Any:
+    if isinstance(found, dict) and isinstance(wanted, dict):
+        shared = found.keys() & wanted.keys()
+        return found | wanted | {name: _agreed(path, f"{key} of {name}", found[name], wanted[name]) for name in shared}
+    if found != wanted:
+        raise InputError(
+            f"{path}: was begun with {key} = {json.dumps(found)}, not {json.dumps(wanted)} "
+            "(use the same settings to resume, or name another folder)"
+        )
+    return wanted

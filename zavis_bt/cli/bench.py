@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
+from collections.abc import Iterable
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -48,7 +50,7 @@ def bench(
     settings = MissionSettings(planner=planner, max_travel=max_travel)
     common = partial(Choices, robot=spec, perception=perception, prior=prior, settings=settings)
     choices = {name: common(tree=path, method=name) for name, path in trees.items()}
-    chosen = load_episodes(episodes)[:limit]
+    chosen = load_episodes(episodes)[:limit]  # before anything else reads the file: tells what is wrong with it
     results = run_benchmark(
         make_tasks(chosen, method, seed, repeats),
         partial(run_episode, choices),
@@ -56,6 +58,8 @@ def bench(
         settings={
             **{"robot": robot, "perception": perception, "prior": prior},
             **{"planner": planner, "max_travel": max_travel, "seed": seed},
+            "episodes": _digest([episodes]),
+            "trees": {name: _digest(sorted(path.parent.glob("*.yaml"))) for name, path in trees.items()},
         },
         workers=workers,
     )
@@ -71,6 +75,14 @@ def _tree(method: str) -> Path:
     path = resolve_tree(METHODS.get(method, method))
     load_tree(path, Registry.from_entry_points(), {"target": "anything"})
     return path
+
+
+def _digest(files: Iterable[Path]) -> str:
+    """Return a text that changes when a file does; a tree may include any file beside it."""
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def run_episode(choices: dict[str, Choices], task: Task) -> MissionResult:
