@@ -4,9 +4,11 @@ from zavis_bt.mission.dialogue import Dialogue
 from zavis_bt.mission.human import Nobody, TerminalHuman, WithTimeout
 from zavis_bt.mission.jobs import DoneJob, InlineJobs, ThreadJobs
 from zavis_bt.mission.journal import MissionJournal
-from zavis_bt.mission.mission import Mission, Parts, Task, spl
+from zavis_bt.mission.mission import Mission
+from zavis_bt.mission.parts import Parts, Task
 from zavis_bt.mission.safety import SafeBase, SafeRobot, SafetySettings
 from zavis_bt.mission.settings import MissionSettings, Search
+from zavis_bt.mission.spl import spl
 
 __all__ = [
     "Dialogue",

@@ -5,20 +5,20 @@ from __future__ import annotations
 import logging
 import math
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
 from zavis_bt.mapping import Mapper, SemanticMap
 from zavis_bt.mission.dialogue import Dialogue
 from zavis_bt.mission.journal import MissionJournal
+from zavis_bt.mission.parts import Parts, Task
 from zavis_bt.mission.safety import SafeRobot
 from zavis_bt.mission.settings import MissionSettings, Search
+from zavis_bt.mission.spl import spl
 from zavis_bt.perception import Perceiver
 from zavis_bt.planning import Navigator
-from zavis_bt.protocols import Clock, Detector, Human, Jobs, KnowledgePrior, Matcher, Observer, Robot
+from zavis_bt.protocols import Observer
 from zavis_bt.tree import Outcome, Runner, Status, Tree
 from zavis_bt.types import (
     BaseState,
@@ -38,32 +38,6 @@ from zavis_bt.types import (
 
 _LOG = logging.getLogger(__name__)
 _STEP = 0.02  # distance between recorded points of the trajectory [m]
-
-
-@dataclass(frozen=True, slots=True)
-class Task:
-    """Which mission this is, for its result."""
-
-    id: str
-    method: str
-    seed: int
-    shortest_path_length: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """What a mission is composed of; the command line and the benchmark choose them."""
-
-    robot: Robot
-    clock: Clock
-    jobs: Jobs
-    detector: Detector
-    matcher: Matcher
-    prior: KnowledgePrior
-    human: Human
-    rng: np.random.Generator
-    details: Callable[[], Mapping[str, Any]] = dict
-    """Further counts for the result that only whoever plays the robot knows."""
 
 
 class Mission:
@@ -322,19 +296,3 @@ class Mission:
     def trajectory(self) -> FloatArray:
         """(n, 2) positions driven so far [m]."""
         return np.array(self._trajectory, dtype=np.float64).reshape(-1, 2)
-
-
-def spl(success: bool, path_length: float, shortest: float) -> float:
-    """Return success weighted by path length, S·l / max(p, l) (Anderson et al. 2018).
-
-    Args:
-        success: S.
-        path_length: p, what was driven [m].
-        shortest: l, the shortest geodesic path to a pose at which success is possible [m].
-
-    Returns:
-        0 to 1; a success with l = 0 counts 1.
-    """
-    if not success:
-        return 0.0
-    return shortest / max(path_length, shortest) if shortest > 0 else 1.0
