@@ -24,6 +24,7 @@ from zavis_bt.mission import (
     Task,
     TerminalHuman,
     ThreadJobs,
+    TimeStandsStill,
     WithTimeout,
 )
 from zavis_bt.perception import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS
@@ -108,7 +109,7 @@ class SimulatedMission:
             detector=SimDetector(choices.known, self.simulation.rng("detector")),
             matcher=SimMatcher(similarity, self.simulation.rng("matcher")),
             prior=make_prior(choices.prior),
-            human=_human(choices.confirm, Oracle(wanted), self.simulation, pictures),
+            human=_human(choices, Oracle(wanted), self.simulation, pictures),
             rng=self.simulation.rng("planning"),
             details=lambda: {"collisions": self.simulation.collisions},
         )
@@ -127,10 +128,11 @@ class SimulatedMission:
             self._jobs.close()
 
 
-def _human(confirm: str, oracle: Oracle, simulation: Simulation, pictures: Path) -> Human:
-    match confirm:
+def _human(choices: Choices, oracle: Oracle, simulation: Simulation, pictures: Path) -> Human:
+    match choices.confirm:
         case "terminal":
-            return TerminalHuman(pictures)
+            person = TerminalHuman(pictures)
+            return person if choices.real_time else TimeStandsStill(person)
         case "timeout":
             return WithTimeout(Nobody(), simulation.clock, 30.0, accept=True)
     return oracle

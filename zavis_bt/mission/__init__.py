@@ -1,7 +1,7 @@
 """A mission from files: robot, tree, models, recording, and its result."""
 
 from zavis_bt.mission.dialogue import Dialogue
-from zavis_bt.mission.human import Nobody, TerminalHuman, WithTimeout
+from zavis_bt.mission.human import Nobody, TerminalHuman, TimeStandsStill, WithTimeout
 from zavis_bt.mission.jobs import DoneJob, InlineJobs, ThreadJobs
 from zavis_bt.mission.journal import MissionJournal
 from zavis_bt.mission.mission import Mission
@@ -26,6 +26,7 @@ __all__ = [
     "Task",
     "TerminalHuman",
     "ThreadJobs",
+    "TimeStandsStill",
     "WithTimeout",
     "spl",
 ]

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from zavis_bt.mission.jobs import DoneJob
 from zavis_bt.protocols import Clock, Human, Job
 from zavis_bt.types import Answer, Candidate
 
@@ -54,13 +55,13 @@ class TerminalHuman:
         return reply
 
     def _save(self, candidates: Sequence[Candidate]) -> list[tuple[Candidate, Path]]:
-        import cv2
+        from zavis_bt.recording.candidate_images import candidate_image, encode_png
 
         self._pictures.mkdir(parents=True, exist_ok=True)
         shown = []
         for number, candidate in enumerate(candidates, start=1):
             path = self._pictures / f"question_{self._asked:02d}_{number}.png"
-            cv2.imwrite(str(path), cv2.cvtColor(candidate.patch, cv2.COLOR_RGB2BGR))
+            path.write_bytes(encode_png(candidate_image(candidate)))
             shown.append((candidate, path))
         return shown
 
@@ -125,6 +126,17 @@ class WithTimeout:
         """Ask; the job is done when the person answered or the time is over."""
         job = self._human.ask(target, candidates)
         return _TimedReply(job, self._clock, self._clock.now() + self._seconds, self._otherwise)
+
+
+class TimeStandsStill:
+    """A person for whom a lock-step simulation waits: no simulated time passes while they think."""
+
+    def __init__(self, human: Human) -> None:
+        self._human = human
+
+    def ask(self, target: str, candidates: Sequence[Candidate]) -> Job[Answer]:
+        """Ask and wait for the answer."""
+        return DoneJob(self._human.ask(target, candidates).result())
 
 
 class Nobody:
