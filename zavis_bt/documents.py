@@ -28,6 +28,13 @@ _WORDS: Mapping[str, object] = {
 }  # fmt: skip
 
 
+_WORDING: Mapping[str, str] = {
+    "tuple_type": "should be a list",
+    "list_type": "should be a list",
+    "float_parsing": "should be a number",
+}  # where pydantic speaks of Python
+
+
 @dataclass(frozen=True, slots=True)
 class Document:
     """Content of a YAML file: mappings, lists and scalars."""
@@ -156,7 +163,7 @@ def explain(fault: Mapping[str, Any], model: type[BaseModel]) -> str:
         return f"unknown key '{_joined(fault['loc'])}'{did_you_mean(str(last), _fields_at(model, parents))}"
     if fault["type"] == "missing":
         return f"key '{_joined(fault['loc'])}' is missing"
-    message = fault["msg"].removeprefix("Value error, ").removeprefix("Input ")
+    message = _WORDING.get(fault["type"], fault["msg"].removeprefix("Value error, ").removeprefix("Input "))
     if fault["type"] == "value_error" or isinstance(fault["input"], dict | list):
         return f"{_joined(fault['loc'])}: {message}".removeprefix(": ")
     return f"{_joined(fault['loc'])}: {message}, not {fault['input']!r}"

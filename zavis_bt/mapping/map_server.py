@@ -5,14 +5,14 @@ The image's first row is the largest y; a grid's first row is the smallest.
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from zavis_bt.documents import check, read_document
 from zavis_bt.errors import InputError
 from zavis_bt.mapping.pgm import read_bytes, read_pgm, write_pgm
 from zavis_bt.types import FREE, OCCUPIED, UNKNOWN, GridMap
@@ -94,30 +94,12 @@ def save_map(yaml_path: Path | str, grid: GridMap) -> None:
 
 
 def _read_description(path: Path) -> _MapFile:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    try:
-        content = YAML(typ="safe", pure=True).load(io.BytesIO(read_bytes(path)))
-    except (YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not a YAML file: {' '.join(str(error).split())}") from error
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: not a map_server file (keys image, resolution, origin, … expected)")
-    try:
-        return _MapFile.model_validate(content)
-    except ValidationError as error:
-        raise InputError(f"{path}: {_first_fault(error)}") from error
-
-
-def _first_fault(error: ValidationError) -> str:
-    fault = error.errors()[0]
-    where = ".".join(str(part) for part in fault["loc"])
-    if fault["type"] == "missing":
-        return f"key '{where}' is missing"
-    if fault["type"] == "extra_forbidden":
-        return f"unknown key '{where}' (one of: {', '.join(_MapFile.model_fields)})"
-    message = fault["msg"].removeprefix("Value error, ")
-    return f"{where}: {message}, not {fault['input']!r}" if where else message
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    content, faults = check(read_document(path), _MapFile)
+    if content is None:
+        raise InputError(faults[0] + (f" [and {len(faults) - 1} more]" if len(faults) > 1 else ""))
+    return content
 
 
 def _read_image(path: Path) -> tuple[NDArray[np.uint16], int]:
