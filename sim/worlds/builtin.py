@@ -39,6 +39,6 @@ def resolve_world(name_or_path: str | Path) -> Path:
     name = str(name_or_path)
     if name in builtin_worlds():
         return builtin_world(name)
-    beside = {file.name for file in path.parent.glob(f"*{_SUFFIX}")} if path.parent.is_dir() else set()
+    beside = {file.name for file in path.parent.glob(f"*{_SUFFIX}") if file.is_file()}
     choices = {*builtin_worlds(), *(str(path.parent / file) for file in beside)}
     raise InputError(f"world: no file and no built-in world '{name}'{did_you_mean(name, choices)}")

@@ -75,7 +75,8 @@ def _check_node(node: NodeSpec, signature: Signature, tree: TreeSpec, library: L
         _check_until(node.arguments["until"], node, faults)
     for name, port in signature.inputs.items():
         if port.required and name not in node.arguments:
-            faults.add(node.mark, "missing-argument", f"'{node.kind}' needs '{name}': {port.description}")
+            meaning = f": {port.description}" if port.description else ""
+            faults.add(node.mark, "missing-argument", f"'{node.kind}' needs '{name}'{meaning}")
     for name, argument in node.save.items():
         if name not in signature.outputs:
             near = did_you_mean(name, signature.outputs) if signature.outputs else " (it has none)"

@@ -130,7 +130,8 @@ class Library:
             try:
                 included = self.read(target, _shown(file.name, str(item.value)), chain)
             except InputError as error:
-                files = [path.name for path in target.parent.glob("*.yaml")] if target.parent.is_dir() else []
+                beside = target.parent.glob("*.yaml") if target.parent.is_dir() else ()
+                files = [path.name for path in beside if path.resolve() not in chain]
                 near = did_you_mean(target.name, files)
                 self.faults.add(item.mark, "include", f"{error}{near}")
                 continue
