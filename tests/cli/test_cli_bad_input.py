@@ -317,7 +317,7 @@ def test_nothing_is_suggested_that_would_not_do(tmp_path):
     (tmp_path / "folder.world.yaml").mkdir()
     assert "did you mean 'folder" not in run(world="folder.world.yaml").output
     tree("{sequence: [m]}")()
-    assert "6:20: error[missing-argument]: 'm' needs 'target'\n" in zavis("tree", "check", "t.yaml").output
+    assert "6:21: error[missing-argument]: 'm' needs 'target'\n" in zavis("tree", "check", "t.yaml").output
 
 
 @pytest.mark.usefixtures("_nothing_moves")
