@@ -15,6 +15,7 @@ from zavis_bt.tree.decorators import Condition, Repeat, Retry, Timeout, When
 from zavis_bt.tree.nodes import label
 from zavis_bt.tree.scope import Binding, Scope, Variable
 from zavis_bt.tree.spec import NodeSpec
+from zavis_bt.tree.ticking import alone
 
 Node = py_trees.behaviour.Behaviour
 
@@ -41,7 +42,7 @@ class Parts:
 
 def assemble(parts: Parts) -> Node:
     """Return the node of a built-in kind."""
-    return _ASSEMBLERS[parts.spec.kind](parts)
+    return alone(_ASSEMBLERS[parts.spec.kind](parts))
 
 
 def _sequence(parts: Parts) -> Node:

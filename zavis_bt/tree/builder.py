@@ -19,6 +19,7 @@ from zavis_bt.tree.library import Library
 from zavis_bt.tree.ports import Port
 from zavis_bt.tree.scope import UNSET, Binding, Constant, Scope, Variable
 from zavis_bt.tree.spec import Argument, FileSpec, NodeSpec, Reference, TreeSpec
+from zavis_bt.tree.ticking import alone
 from zavis_bt.tree.variables import symbols_of
 
 Node = py_trees.behaviour.Behaviour
@@ -93,7 +94,7 @@ class Builder:
         prefix = tree.title if self._calls[tree.title] == 1 else id_
         assert tree.do is not None
         child = _Instance(self, tree, scope, prefix).node(tree.do, depth + 1)
-        return self._place(position, Call(name, child, scope.own), id_, kind, depth, mark)
+        return self._place(position, alone(Call(name, child, scope.own)), id_, kind, depth, mark)
 
     def _declare(self, scope: Scope, name: str, type_: Any) -> Variable:
         scope.bindings[name] = variable = Variable(name, f"{scope.namespace}/{name}", type_)
