@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
@@ -38,6 +39,7 @@ class GenerateWaypoints(Behaviour):
         ge=0.0,
         le=1.0,
     )
+    tries = In(int, "give up a landmark that was offered so often and never visited", default=3, ge=1)
     waypoints = Out(list[Viewpoint], "viewpoints in visiting order")
 
     def setup(
@@ -53,6 +55,7 @@ class GenerateWaypoints(Behaviour):
         """Take the resources."""
         self._robot, self._mapper, self._navigator = robot, mapper, navigator
         self._prior, self._jobs, self._journal = prior, jobs, journal
+        self._offered: Counter[int] = Counter()
         self._order = make_order(self.order)  # an unknown name is told before anything moves
 
     def initialise(self) -> None:
@@ -66,6 +69,7 @@ class GenerateWaypoints(Behaviour):
         if not self._job.done():
             return self.running("ordering viewpoints")
         reachable, ordered = self._job.result()
+        self._offered.update(view.landmark for view in ordered)
         self.waypoints = ordered
         self._journal.record("viewpoints", viewpoints=ordered)
         if not ordered:
@@ -80,7 +84,7 @@ class GenerateWaypoints(Behaviour):
         """Return the landmarks that exist for all we know and have not been searched."""
         landmarks, grid, views = semantic.landmarks, self._mapper.grid, self._mapper.views
         done = semantic.visited | views.searched(landmarks, grid, self.searched_within)
-        left = [each for each in landmarks if each.id not in done]
+        left = [each for each in landmarks if each.id not in done and self._offered[each.id] < self.tries]
         chances = views.chances(left, grid)
         return [each for each, n in zip(left, chances, strict=True) if each.views >= self.persistence * n]
 

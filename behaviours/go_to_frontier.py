@@ -19,7 +19,7 @@ class GoToFrontier(Behaviour):
 
     A frontier is a cluster of free cells beside unknown ones; its goal is its reachable member nearest its middle.
     Frontiers that were reached or could not be reached before are left out: what stays unknown there cannot be seen.
-    Fails with reason ``nothing left to explore``, or with the drive's.
+    Where the drive to one fails, the next is tried. Fails with reason ``nothing left to explore``.
     """
 
     min_length = In(float, "smallest frontier", unit="m", default=0.3, ge=0.05)
@@ -52,7 +52,7 @@ class GoToFrontier(Behaviour):
         if status is DriveStatus.ARRIVED:
             return self.succeed(f"frontier reached after {self._drive.driven:.1f} m")
         if status is DriveStatus.FAILED:
-            return self.fail(self._drive.reason)
+            return self._try_another()
         return self.running(self._drive.reason)
 
     def terminate(self, new_status: Status) -> None:
@@ -60,6 +60,13 @@ class GoToFrontier(Behaviour):
         self._choice.cancel()
         if self._drive is not None:
             self._drive.cancel()
+
+    def _try_another(self) -> Status:
+        assert self._drive is not None
+        reason = self._drive.reason
+        self._drive.cancel()
+        self.initialise()
+        return self.running(f"{reason}; trying another frontier")
 
     def _start(self, goal: Pose2D) -> None:
         self.goal = goal

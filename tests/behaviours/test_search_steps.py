@@ -105,6 +105,12 @@ def test_waypoints_leave_out_visited_and_unlikely_landmarks():
     assert waypoints.feedback_message == "no landmark likely"
 
 
+def test_a_landmark_that_is_never_reached_is_given_up(stage):
+    put_landmark(stage, 1.6, 0.0, "desk")
+    waypoints = stage.setup(GenerateWaypoints(target="cup", tries=2))
+    assert [stage.run(waypoints) for _ in range(3)] == [Status.SUCCESS, Status.SUCCESS, Status.FAILURE]
+
+
 def test_viewpoints_face_their_landmark_from_free_space(stage):
     put_landmark(stage, 2.0, 1.0, "desk")
     waypoints = stage.setup(GenerateWaypoints(target="cup"))
@@ -128,6 +134,15 @@ def test_a_closed_room_has_nothing_left_to_explore(stage):
     frontier = stage.setup(GoToFrontier())
     assert stage.run(frontier) is Status.FAILURE
     assert frontier.feedback_message == "nothing left to explore"
+
+
+def test_where_one_frontier_cannot_be_reached_the_next_is_tried(stage, monkeypatch):
+    goals = iter([Pose2D(5.0, 0.0), Pose2D(1.5, 0.0), None])
+    frontier = stage.setup(GoToFrontier())
+    monkeypatch.setattr(frontier, "_choose", lambda pose: next(goals))
+    assert stage.run(frontier) is Status.SUCCESS
+    assert stage.robot.base_state.pose.x == pytest.approx(1.5, abs=0.35)
+    assert stage.journal.counts["frontier"] == 2
 
 
 def test_back_up_reverses_straight_and_says_how_far(stage):

@@ -12,7 +12,7 @@ from zavis_bt.viz.scene import Scene
 
 _LOG = logging.getLogger(__name__)
 _PERIOD = 0.1  # least time between frames [s]
-_SHARE = 0.05  # of the wall time that drawing may take
+_SHARE = 0.03  # of the wall time that drawing may take
 _FAREWELL = 2.0  # how long the end of a mission waits for the last frame to leave [s]
 
 
