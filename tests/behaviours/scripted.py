@@ -184,7 +184,7 @@ class NowJobs:
     def submit(self, label: str, work: Any, *args: Any) -> DoneJob[Any]:
         try:
             return DoneJob(work(*args))
-        except Exception as error:
+        except Exception as error:  # raised again by whoever asks for the result, as the real executors do
             failure = error
 
             class Failed(DoneJob[Any]):
