@@ -30,6 +30,10 @@ class SimBase:
             estop=self._estop,
         )
 
+    def pose_at(self, stamp: float) -> Pose2D:
+        """Return the pose by odometry at a time within the simulation's memory [s]."""
+        return self._physics.poses_at(self._physics.step_at(stamp))[1]
+
     def command(self, twist: Twist2D) -> None:
         """Drive with this velocity, clipped to the limits; ignored while the emergency stop is pressed.
 

@@ -44,7 +44,7 @@ class Body(NamedTuple):
         )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def is_free(occupied: NDArray[np.bool_], body: Body, u: float, v: float, yaw: float) -> bool:
     """Return whether the body can be at (u, v) in cells, heading to yaw."""
     if not body.disc:
@@ -58,7 +58,7 @@ def is_free(occupied: NDArray[np.bool_], body: Body, u: float, v: float, yaw: fl
     return False
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _disc_is_free(occupied: NDArray[np.bool_], radius: float, u: float, v: float) -> bool:
     rows, cols = occupied.shape
     limit = (radius - _TOUCH) ** 2
@@ -71,7 +71,7 @@ def _disc_is_free(occupied: NDArray[np.bool_], radius: float, u: float, v: float
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _rectangle_is_free(occupied: NDArray[np.bool_], body: Body, u: float, v: float, yaw: float) -> bool:
     rows, cols = occupied.shape
     cos, sin = math.cos(yaw), math.sin(yaw)

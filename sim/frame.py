@@ -43,6 +43,7 @@ class SimFrame(RgbdFrame):
         self,
         scene: Scene,
         intrinsics: CameraIntrinsics,
+        true_transform: FloatArray,
         transform_camera_to_map: FloatArray,
         stamp: float,
         depth_range: tuple[float, float],
@@ -52,17 +53,18 @@ class SimFrame(RgbdFrame):
         Args:
             scene: What there is to see.
             intrinsics: Camera model.
-            transform_camera_to_map: (4, 4) camera pose.
+            true_transform: (4, 4) camera pose in the scene.
+            transform_camera_to_map: (4, 4) camera pose as the robot believes it.
             stamp: Time of capture [s].
             depth_range: Least and greatest depth the camera measures [m].
         """
         super().__init__(intrinsics, transform_camera_to_map, stamp, self._render_all)
-        self._scene = scene
+        self._scene, self._true_transform = scene, true_transform
         self._depth_range = depth_range
 
     @cached_property
     def _view(self) -> View:
-        return View.of(self.transform_camera_to_map, self.intrinsics)
+        return View.of(self._true_transform, self.intrinsics)
 
     @cached_property
     def _bounds(self) -> Bounds:

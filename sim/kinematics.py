@@ -102,7 +102,7 @@ def at_rest(x: float, y: float, yaw: float) -> Motion:
     return Motion(place, place, 0.0, 0.0, 0.0, Contact(False, False, place, 0))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def advance(
     motion: Motion,
     command: Drive,
@@ -138,7 +138,7 @@ def advance(
     return motion
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _step(
     motion: Motion,
     command: Drive,
@@ -167,12 +167,12 @@ def _step(
     return Motion(place, odometry, linear, angular, motion.travelled + abs(driven), contact)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _towards(value: float, target: float, largest: float) -> float:
     return value + min(max(target - value, -largest), largest)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _arc(place: Place, driven: float, turned: float) -> Place:
     """Return the end of an arc: the chord of length driven · sinc(turned / 2), half turned."""
     half = turned / 2
@@ -185,7 +185,7 @@ def _arc(place: Place, driven: float, turned: float) -> Place:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _free_share(ground: Ground, body: Body, place: Place, v: float, w: float, seconds: float) -> float:
     """Return the largest known share of a step, 0 to 1, that ends free of obstacles."""
     if (v == 0.0 and w == 0.0) or _free_at(ground, body, _arc(place, v * seconds, w * seconds)):
@@ -200,14 +200,14 @@ def _free_share(ground: Ground, body: Body, place: Place, v: float, w: float, se
     return low
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _free_at(ground: Ground, body: Body, place: Place) -> bool:
     u = (place.x - ground.x0) / ground.resolution - 0.5
     v = (place.y - ground.y0) / ground.resolution - 0.5
     return is_free(ground.occupied, body, u, v, place.yaw)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _meet(contact: Contact, place: Place, stalled: bool, disc: bool) -> Contact:
     """Return the contact after a step: a new one is counted once, and ends when the base has moved away."""
     if stalled:
@@ -217,7 +217,7 @@ def _meet(contact: Contact, place: Place, stalled: bool, disc: bool) -> Contact:
     return Contact(False, contact.touching and moved < _RELEASE and turned < _RELEASE, contact.place, contact.number)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _dead_reckon(odometry: Place, driven: float, turned: float, error: OdometryError, normals: FloatArray) -> Place:
     distance, rotation = abs(driven), abs(turned)
     distance_variance = error.distance_per_metre * distance + error.distance_per_radian * rotation

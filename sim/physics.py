@@ -59,6 +59,12 @@ class Physics:
             limits.angular_acceleration / STEPS_PER_SECOND,
         )
 
+    def drive(self, linear: float, angular: float, linear_change: float, angular_change: float) -> None:
+        """Approach a velocity until told otherwise, within accelerations [m/s²], [rad/s²]."""
+        forever = np.iinfo(np.int64).max
+        changes = linear_change / STEPS_PER_SECOND, angular_change / STEPS_PER_SECOND
+        self._command = Drive(linear, angular, int(forever), *changes)
+
     def advance_to(self, stamp: float) -> None:
         """Advance until ``now >= stamp``."""
         steps = math.ceil(stamp * STEPS_PER_SECOND - 1e-6) - self.step
@@ -77,6 +83,11 @@ class Physics:
             normals,
         )
         self.step += steps
+
+    def step_at(self, stamp: float) -> int:
+        """Return the step nearest to a time [s] among those that `poses_at` knows."""
+        oldest = max(self.step - len(self._history) + 1, 0)
+        return min(max(round(stamp * STEPS_PER_SECOND), oldest), self.step)
 
     def poses_at(self, step: int) -> tuple[Pose2D, Pose2D]:
         """Return the true pose and the odometry's after ``step`` steps, which must be within the memory."""

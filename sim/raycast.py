@@ -60,7 +60,7 @@ class RayCaster:
         return self.cast(x, y, first_angle + increment * np.arange(count, dtype=np.float64), range_max)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _free_squares(occupied: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Return (4, rows, cols) sides of free squares; plane 0 towards +x +y, 1 towards −x +y, 2 +x −y, 3 −x −y."""
     rows, cols = occupied.shape
@@ -82,13 +82,13 @@ def _free_squares(occupied: NDArray[np.bool_]) -> NDArray[np.uint8]:
     return sides
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _component(value: float) -> float:
     """Return a component of a direction, without those whose inverse is not finite."""
     return value if abs(value) > 1e-200 else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _cast(
     leaps: NDArray[np.uint8], u: float, v: float, angles: FloatArray, reach: float, resolution: float
 ) -> FloatArray:

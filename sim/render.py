@@ -54,7 +54,7 @@ def measure(
     return depths
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _pixel_ray(view: View, col: int, row: int) -> Ray:
     """Return the ray through a pixel's centre, map frame, optical depth 1."""
     x, y, r, p = (col + 0.5 - view.cx) / view.fx, (row + 0.5 - view.cy) / view.fy, view.rotation, view.position
@@ -68,7 +68,7 @@ def _pixel_ray(view: View, col: int, row: int) -> Ray:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _collect(bounds: Bounds, x0: float, y0: float, x1: float, y1: float, ids: IntArray) -> int:
     """Collect the boxes whose rectangle comes within a pixel of an image region; returns their number."""
     count = 0
@@ -82,12 +82,12 @@ def _collect(bounds: Bounds, x0: float, y0: float, x1: float, y1: float, ids: In
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _reading(depth: float, depth_range: tuple[float, float]) -> float:
     return depth if depth_range[0] <= depth <= depth_range[1] else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _measure(
     solids: Solids,
     view: View,
@@ -107,7 +107,7 @@ def _measure(
         depths[i] = _reading(depth, depth_range)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _render(
     solids: Solids,
     view: View,
@@ -139,7 +139,7 @@ def _render(
                         rgb[row - first_row, col - first_col, k] = np.uint8(paints[paint, k] * shade)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _room_row(surface: int, face: int, x: float, y: float, first: int) -> int:
     """Return the row of the paints for what is not a box; `room_paint` begins at row ``first``."""
     if surface == WALL:
@@ -149,7 +149,7 @@ def _room_row(surface: int, face: int, x: float, y: float, first: int) -> int:
     return first + _SKY_PAINT
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _edge_shade(boxes: FloatArray, box: int, face: int, x: float, y: float, z: float) -> float:
     """Return how bright a point of a face is: dark near the edges, so that boxes show their shape."""
     cos, sin = boxes[box, COS], boxes[box, SIN]

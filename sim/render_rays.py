@@ -128,7 +128,7 @@ def wall_entry(clearance: IntArray, room: FloatArray, ray: Ray, limit: float) ->
     return math.inf, -1
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def is_hull(hulls: IntArray, box: int, other: int) -> bool:
     """Return whether ``other`` is open towards ``box``."""
     for k in range(hulls.shape[1]):
@@ -139,7 +139,7 @@ def is_hull(hulls: IntArray, box: int, other: int) -> bool:
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _seen_through_hulls(hulls: IntArray, hits: IntArray, entries: FloatArray, count: int, nearest: int) -> int:
     """Return the place in ``hits`` of the farthest box that no other box hides; ``nearest`` if there is none."""
     seen = nearest
@@ -204,7 +204,7 @@ def first_hit(
     return (floor, FLOOR, TOP) if floor < math.inf else (math.inf, NOTHING, -1)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def is_hidden(
     boxes: FloatArray,
     hulls: IntArray,
@@ -237,7 +237,7 @@ def is_hidden(
     return wall < 1.0 - slack / length
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def cast_rays(
     solids: Solids, origin: FloatArray, directions: FloatArray, distances: FloatArray, surfaces: IntArray
 ) -> None:

@@ -30,7 +30,8 @@ class MountedCamera:
         if self._last is None or self._last[0] != number:
             stamp = step / STEPS_PER_SECOND
             pan, tilt = self._pan_tilt.angles_at(stamp)
-            self._last = number, self._camera.capture(self._physics.poses_at(step)[0], pan, tilt, stamp)
+            true, odometry = self._physics.poses_at(step)
+            self._last = number, self._camera.capture(true, pan, tilt, stamp, odometry)
         return self._last[1]
 
 

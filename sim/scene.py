@@ -115,7 +115,7 @@ def _touches_wall(world: World, thing: WorldObject) -> bool:
     return bool(world.walls[rows, cols].any())
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _clearance(walls: NDArray[np.bool_]) -> IntArray:
     """Return (rows, cols) chessboard distance to the nearest wall cell: two sweeps, exact for this metric."""
     rows, cols = walls.shape

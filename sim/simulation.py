@@ -7,17 +7,17 @@ import numpy as np
 from sim.base import SimBase
 from sim.camera import SimCamera
 from sim.clock import SimClock
-from sim.collision import Body, is_free
-from sim.kinematics import Ground, OdometryError
 from sim.lidar import SimLidar
 from sim.noise import NoiseSettings, RangeNoise, stream
 from sim.pan_tilt import SimPanTilt
-from sim.physics import Physics
+from sim.put_down import put_down
 from sim.robot import MountedCamera, SimRobot
 from sim.scene import Scene
 from sim.world import World
 from zavis_bt.errors import InputError
-from zavis_bt.types import Footprint, GridMap, Pose2D, RobotSpec
+from zavis_bt.types import Pose2D, RobotSpec
+
+_MEMORY = 1.0  # so long ago poses and angles are still known [s]
 
 
 class Simulation:
@@ -51,9 +51,9 @@ class Simulation:
         if seed < 0:
             raise InputError(f"seed: {seed} is negative (0 or more)")
         noise = noise or NoiseSettings()
-        memory = 1 / min(spec.lidar.rate, spec.camera.rate)
+        memory = max(1 / min(spec.lidar.rate, spec.camera.rate), _MEMORY)
         self._seed = seed
-        self._physics = _put_down(world, spec.footprint, start, noise, self.rng("odometry"), memory)
+        self._physics = put_down(world, spec.footprint, start, noise, self.rng("odometry"), memory)
         self.clock = SimClock(self._physics, real_time=real_time)
         pan_tilt = SimPanTilt(self._physics, spec.pan_tilt, memory=memory)
         camera = SimCamera(Scene.of(world), spec.camera)
@@ -83,32 +83,3 @@ class Simulation:
     def rng(self, name: str) -> np.random.Generator:
         """Return a new random generator for the consumer ``name``, which follows from the seed and the name."""
         return stream(self._seed, name)
-
-
-def _put_down(
-    world: World, footprint: Footprint, start: Pose2D, noise: NoiseSettings, rng: np.random.Generator, memory: float
-) -> Physics:
-    grid = world.grid
-    ground = Ground(world.occupied, float(grid.resolution), float(grid.origin[0]), float(grid.origin[1]))
-    body = Body.of(footprint, grid.resolution)
-    _check_start(world, ground, body, start)
-    walk = (noise.rotation_per_radian, noise.rotation_per_metre, noise.distance_per_metre, noise.distance_per_radian)
-    error = OdometryError(any(walk), *map(float, walk))
-    return Physics(ground, body, start, error=error, rng=rng, memory=memory)
-
-
-def _check_start(world: World, ground: Ground, body: Body, start: Pose2D) -> None:
-    u = (start.x - ground.x0) / ground.resolution - 0.5
-    v = (start.y - ground.y0) / ground.resolution - 0.5
-    if is_free(ground.occupied, body, u, v, start.yaw):
-        return
-    place = f"{world.path or world.name}: start ({start.x:g}, {start.y:g})"
-    if not _inside(world.grid, start):
-        raise InputError(f"{place}: is outside the map (a free place inside is needed)")
-    reach = body.reach * ground.resolution
-    raise InputError(f"{place}: the robot does not fit there (obstacles are closer than its outline of {reach:.2f} m)")
-
-
-def _inside(grid: GridMap, pose: Pose2D) -> bool:
-    row, col = grid.to_cells(np.array([[pose.x, pose.y]]))[0]
-    return bool(0 <= row < grid.shape[0] and 0 <= col < grid.shape[1])

@@ -89,7 +89,7 @@ def sightings(solids: Solids, view: View, bounds: Bounds) -> Sightings:
     return Sightings(indices[:seen], table[:seen, :4], table[:seen, 4], table[:seen, 5])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _corner(boxes: FloatArray, box: int, along: float, across: float, up: float) -> tuple[float, float, float]:
     """Return the map point at the given fractions (−1 to 1) of a box's half extents."""
     cos, sin = boxes[box, COS], boxes[box, SIN]
@@ -101,7 +101,7 @@ def _corner(boxes: FloatArray, box: int, along: float, across: float, up: float)
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _to_optical(view: View, x: float, y: float, z: float) -> tuple[float, float, float]:
     rx, ry, rz = x - view.position[0], y - view.position[1], z - view.position[2]
     r = view.rotation
@@ -112,14 +112,14 @@ def _to_optical(view: View, x: float, y: float, z: float) -> tuple[float, float,
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _stretch(rectangle: FloatArray, u: float, v: float) -> None:
     """Widen a rectangle so that it holds the pixel position."""
     rectangle[0], rectangle[1] = min(rectangle[0], u), min(rectangle[1], v)
     rectangle[2], rectangle[3] = max(rectangle[2], u), max(rectangle[3], v)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _project_boxes(boxes: FloatArray, view: View, rectangles: FloatArray, nearest: FloatArray) -> None:
     corners = np.empty((8, 3))
     for box in range(len(boxes)):
@@ -141,7 +141,7 @@ def _project_boxes(boxes: FloatArray, view: View, rectangles: FloatArray, neares
             _clip_edges(view, corners, rectangle, nearest[box : box + 1])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _clip_edges(view: View, corners: FloatArray, rectangle: FloatArray, nearest: FloatArray) -> None:
     """Add the points where a box's twelve edges pass the near plane."""
     for k in range(8):
@@ -156,7 +156,7 @@ def _clip_edges(view: View, corners: FloatArray, rectangle: FloatArray, nearest:
             _stretch(rectangle, view.fx * x / NEAR + view.cx, view.fy * y / NEAR + view.cy)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _rivals(bounds: Bounds, box: int, rivals: IntArray) -> int:
     """Collect the boxes that may hide a box: their rectangles overlap. Returns their number."""
     count, rectangle = 0, bounds.rectangles[box]
@@ -170,7 +170,7 @@ def _rivals(bounds: Bounds, box: int, rivals: IntArray) -> int:
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _measure_boxes(solids: Solids, view: View, bounds: Bounds, table: FloatArray, indices: IntArray) -> int:
     """Fill rows of visible box, fraction and area; returns how many boxes are in sight."""
     seen = 0
@@ -197,7 +197,7 @@ def _measure_boxes(solids: Solids, view: View, bounds: Bounds, table: FloatArray
     return seen
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _on_face(face: int, a: float, b: float) -> tuple[float, float, float]:
     """Return fractions of the half extents for the point (a, b) of a face, each −1 to 1."""
     side = 2.0 * (face & 1) - 1.0
@@ -208,7 +208,7 @@ def _on_face(face: int, a: float, b: float) -> tuple[float, float, float]:
     return a, b, side
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _measure_face(
     solids: Solids, view: View, box: int, face: int, points: int, rivals: IntArray, count: int, row: FloatArray
 ) -> None:
@@ -246,7 +246,7 @@ def _measure_face(
             _stretch_cell(boxes, view, box, face, i, j, points, row)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _stretch_cell(
     boxes: FloatArray, view: View, box: int, face: int, i: int, j: int, points: int, rectangle: FloatArray
 ) -> None:

@@ -7,6 +7,7 @@ their latest state and hand it out.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from zavis_bt.types import (
     Box,
     Candidate,
     Detection,
+    DeviceReport,
     FloatArray,
     LaserScan,
     MissionResult,
@@ -48,24 +50,35 @@ class Base(Protocol):
     """A differential-drive base."""
 
     def state(self) -> BaseState:
-        """Return the latest state."""
+        """Return the latest state. Its stamp stands still while the base is not heard of."""
+
+    def pose_at(self, stamp: float) -> Pose2D:
+        """Return the odometry pose at a time within the last second [s]; the nearest known one for other times."""
 
     def command(self, twist: Twist2D) -> None:
-        """Drive with this velocity until the next command; the base stops by itself if none follows in time.
+        """Drive with this velocity until the next command, speeding up and slowing down within the limits.
+
+        The base stops by itself if no command follows in time.
 
         Raises:
             DeviceError: The base cannot be reached.
         """
 
     def stop(self) -> None:
-        """Come to rest now; never raises, may be called at any time and twice."""
+        """Come to rest as fast as the base can, without regard to the limits.
+
+        Never raises, may be called at any time and twice.
+        """
 
 
 class PanTilt(Protocol):
     """A pan-tilt unit."""
 
     def state(self) -> PanTiltState:
-        """Return the latest joint angles."""
+        """Return the latest joint angles. Their stamp stands still while the unit is not heard of."""
+
+    def angles_at(self, stamp: float) -> tuple[float, float]:
+        """Return pan and tilt [rad] at a time within the last second [s]; the nearest known ones for other times."""
 
     def move_to(self, pan: float, tilt: float) -> None:
         """Start a move to these angles [rad], clipped to the limits.
@@ -117,6 +130,40 @@ class Robot(Protocol):
 
     def close(self) -> None:
         """Stop all motion and release the devices; never raises, may be called twice."""
+
+
+class Device(Protocol):
+    """What every driver's device offers beside its use."""
+
+    def report(self) -> DeviceReport:
+        """Return its name plate, its figures so far and what is wrong with it."""
+
+    def close(self) -> None:
+        """Stop all motion and release the device; never raises, may be called twice."""
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceContext:
+    """What a driver is told when it opens a device."""
+
+    where: str
+    """Place in the robot file, to begin error messages with: ``my.robot.yaml: devices.base``."""
+    spec: RobotSpec
+    """The robot's model."""
+    clock: Clock
+    """The mission's clock, which all stamps are on."""
+    start: Pose2D
+    """Where the robot stands in the map when it is opened: the odometry begins there."""
+    camera_pose: Callable[[float], FloatArray]
+    """(4, 4) transform of optical camera points to the map at a time [s], by odometry and joint angles."""
+
+
+DeviceFactory = Callable[[Mapping[str, Any], DeviceContext], Any]
+"""Opens a device with the settings of the robot file. Entry points of the group ``zavis_bt.devices`` name such
+functions, as ``base.<driver>``, ``pan_tilt.<driver>``, ``lidar.<driver>`` or ``camera.<driver>``.
+
+It raises `InputError` for wrong settings and `DeviceError` if the device cannot be opened: one line with the remedy.
+"""
 
 
 class Detector(Protocol):

@@ -88,6 +88,9 @@ class _Base:
     def state(self) -> BaseState:
         return self.robot.base_state
 
+    def pose_at(self, stamp: float) -> Pose2D:
+        return self.robot.base_state.pose
+
     def command(self, twist: Twist2D) -> None:
         self.robot.twist = twist
 
@@ -103,6 +106,9 @@ class _PanTilt:
     def state(self) -> PanTiltState:
         settled = self.robot.time >= self.robot.settle_at
         return PanTiltState(*self.robot.angles, settled, self.robot.time)
+
+    def angles_at(self, stamp: float) -> tuple[float, float]:
+        return self.robot.angles
 
     def move_to(self, pan: float, tilt: float) -> None:
         self.robot.moves.append((pan, tilt))

@@ -68,7 +68,7 @@ def _to_cells(point: tuple[float, float], resolution: float, origin: tuple[float
     return (point[0] - origin[0]) / resolution, (point[1] - origin[1]) / resolution
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _passable(occupied: BoolGrid, radius: float) -> BoolGrid:
     """Return the cells whose centre is at least ``radius`` [cells] from every occupied centre and from the outside."""
     rows, cols = occupied.shape
@@ -88,7 +88,7 @@ def _passable(occupied: BoolGrid, radius: float) -> BoolGrid:
     return passable
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _clear(blocked: BoolGrid, x0: float, y0: float, x1: float, y1: float) -> bool:
     """Return whether no blocked cell lies on the segment [cells]; what is outside the grid blocks."""
     rows, cols = blocked.shape
@@ -114,7 +114,7 @@ def _clear(blocked: BoolGrid, x0: float, y0: float, x1: float, y1: float) -> boo
             row, next_y = row + step_y, next_y + span_y
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _in_view(walls: BoolGrid, x: float, y: float, tx: float, ty: float, reach: float, grace: float) -> bool:
     """Return whether the target (tx, ty) is in view from (x, y), all in cells."""
     distance = math.hypot(tx - x, ty - y)
@@ -126,7 +126,7 @@ def _in_view(walls: BoolGrid, x: float, y: float, tx: float, ty: float, reach: f
     return bool(_clear(walls, x, y, x + (tx - x) * share, y + (ty - y) * share))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _mark_views(
     goals: BoolGrid, passable: BoolGrid, walls: BoolGrid, tx: float, ty: float, reach: float, grace: float
 ) -> None:
@@ -150,7 +150,7 @@ def _first_cells(passable: BoolGrid, x: float, y: float) -> NDArray[np.intp]:
     return nearest
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _dijkstra(passable: BoolGrid, goals: BoolGrid, first: NDArray[np.intp], x: float, y: float) -> FloatArray:
     """Return the points (x, y) [cells] from the start to the nearest goal, (n, 2); none if there is no path."""
     rows, cols = passable.shape
@@ -180,7 +180,7 @@ def _dijkstra(passable: BoolGrid, goals: BoolGrid, first: NDArray[np.intp], x: f
     return np.empty((0, 2))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _trace(parent: NDArray[np.int64], row: int, col: int, x: float, y: float) -> FloatArray:
     """Return the points [cells] from the start (x, y) to the centre of cell [row, col], (n, 2)."""
     cols = parent.shape[1]
@@ -195,7 +195,7 @@ def _trace(parent: NDArray[np.int64], row: int, col: int, x: float, y: float) ->
     return path
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _taut_length(passable: BoolGrid, points: FloatArray) -> float:
     """Return the length of the path [cells] after every stretch that can be driven straight has been."""
     blocked = ~passable

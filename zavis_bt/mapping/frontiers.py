@@ -79,7 +79,7 @@ def frontier_goal(
     return x, y
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _mark(states: NDArray[np.int8]) -> NDArray[np.uint8]:
     """Return (rows + 2, cols + 2) with 1 at frontier cells; the rim lets neighbours be read without a check."""
     rows, cols = states.shape
@@ -97,7 +97,7 @@ def _mark(states: NDArray[np.int8]) -> NDArray[np.uint8]:
     return marks
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _clusters(states: NDArray[np.int8], needed: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
     """Return (n, 2) cells, cluster after cluster, where each cluster ends, and its extent of at least ``needed``."""
     marks = _mark(states)
@@ -122,7 +122,7 @@ def _clusters(states: NDArray[np.int8], needed: int) -> tuple[NDArray[np.intp], 
     return cells[:count].copy(), ends[:clusters], extents[:clusters]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _flood(flat: NDArray[np.uint8], width: int, seed: int, found: NDArray[np.intp], begin: int) -> int:
     """Move the cluster of a cell from the marks to ``found[begin:end]``, breadth first, and return the end."""
     flat[seed] = 0

@@ -40,7 +40,7 @@ def visible_from(blocked: NDArray[np.bool_], origin: tuple[int, int], targets: N
     return seen
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _visible(blocked: NDArray[np.bool_], row: int, col: int, targets: NDArray[np.intp]) -> NDArray[np.bool_]:
     seen = np.empty(len(targets), dtype=np.bool_)
     for i in range(len(targets)):
@@ -48,7 +48,7 @@ def _visible(blocked: NDArray[np.bool_], row: int, col: int, targets: NDArray[np
     return seen
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _clear(blocked: NDArray[np.bool_], row0: int, col0: int, row1: int, col1: int) -> bool:
     rows, cols = blocked.shape
     if not (0 <= row0 < rows and 0 <= row1 < rows and 0 <= col0 < cols and 0 <= col1 < cols):

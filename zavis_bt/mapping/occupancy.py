@@ -190,7 +190,7 @@ def _frozen(states: NDArray[np.int8]) -> NDArray[np.int8]:
     return states
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _bounds(x: float, y: float, beams: Beams, cell: float) -> tuple[int, int, int, int]:
     """Return the rows and columns [first, end) a scan may touch."""
     cos, sin, reach, _ = beams
@@ -206,7 +206,7 @@ def _bounds(x: float, y: float, beams: Beams, cell: float) -> tuple[int, int, in
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _classify(
     log_odds: LogOddsArray,
     rows: tuple[int, int],

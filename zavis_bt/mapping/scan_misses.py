@@ -14,7 +14,7 @@ from zavis_bt.mapping.visible_area import HIT, Beams
 LogOddsArray = NDArray[np.float32]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def lower(
     log_odds: LogOddsArray, offsets: NDArray[np.int64], columns: NDArray[np.int64], miss: float, low: float
 ) -> None:
@@ -28,7 +28,7 @@ def lower(
                 values[i] = lowered if lowered > least else least
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def lower_unopposed(
     log_odds: LogOddsArray, offsets: NDArray[np.int64], columns: NDArray[np.int64], gap: float, low: float
 ) -> NDArray[np.int64]:
@@ -56,7 +56,7 @@ def lower_unopposed(
     return occupied[:k]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def lower_crossed(
     log_odds: LogOddsArray,
     cells: NDArray[np.int64],
@@ -84,7 +84,7 @@ def lower_crossed(
             flat[index] = max(flat[index] + model.miss, model.low)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def follow_beams(
     log_odds: LogOddsArray,
     x: float,
@@ -110,7 +110,7 @@ def follow_beams(
             _walk(log_odds, x, y, cos[i], sin[i], middle, end, model.miss, model.gap)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _walk(
     log_odds: LogOddsArray,
     x: float,

@@ -20,7 +20,7 @@ _BEHIND_SURFACE, _BEHIND_RIM = 0.4, 0.05
 _LONGEST_STRETCH = 64  # of surface between two hits [cells]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update(
     log_odds: LogOddsArray,
     x: float,
@@ -73,7 +73,7 @@ def update(
         flat[hits[i]] = min(before_hits[i] + model.hit, model.high)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _surface_points(x: float, y: float, beams: Beams, outline: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
     """Return (n, 2) x and y of points just behind where the beams ended [cells]."""
     cos, sin, reach, _kinds = beams
@@ -85,7 +85,7 @@ def _surface_points(x: float, y: float, beams: Beams, outline: NDArray[np.float6
     return points
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _hit_cells(log_odds: LogOddsArray, points: NDArray[np.float64], kinds: NDArray[np.int8]) -> Cells:
     """Find the cells the beams ended in, repeated if hit twice."""
     flat, cols = log_odds.reshape(-1), log_odds.shape[1]
@@ -98,7 +98,7 @@ def _hit_cells(log_odds: LogOddsArray, points: NDArray[np.float64], kinds: NDArr
     return cells[:k], flat[cells[:k]]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _surface_cells(
     log_odds: LogOddsArray, points: NDArray[np.float64], beams: Beams, outline: NDArray[np.float64]
 ) -> Cells:

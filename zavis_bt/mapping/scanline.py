@@ -13,7 +13,7 @@ Spans = tuple[NDArray[np.int64], NDArray[np.int64]]
 pairs ``[first, end)``, lie inside."""
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def polygon_spans(xs: NDArray[np.float64], ys: NDArray[np.float64], rows: int, cols: int) -> Spans:
     """Find the cells whose centres lie inside a closed polygon (even-odd rule).
 

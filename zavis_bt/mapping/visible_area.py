@@ -17,7 +17,7 @@ _WIDEST = 0.26  # beams further apart than 15° say nothing about the area betwe
 _STEEPEST = 5.7  # 1 / tan 10°: a surface seen at a flatter angle than 10° is not told from a jump in depth
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def trace(
     ranges: NDArray[np.float64], angle: float, step: float, range_min: float, limit: float, open_free: bool
 ) -> Beams:
@@ -83,7 +83,7 @@ def _on_line(first: float, second: float, third: float, step: float, tolerance: 
     return inverse > 0 and abs(1 / inverse - third) <= tolerance
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def free_outline(reach: NDArray[np.float64], step: float, cell: float) -> NDArray[np.float64]:
     """Return how far the area between neighbouring beams is free.
 
@@ -115,7 +115,7 @@ def free_outline(reach: NDArray[np.float64], step: float, cell: float) -> NDArra
     return outline
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def corners(
     outline: NDArray[np.float64],
     limit: float,

@@ -116,8 +116,8 @@ class Mission:
 
     def _sense(self) -> None:
         self._robot.base.read()
-        state = self._robot.base.latest
-        self._mapper.update(self._robot.base.scan, state.pose)
+        state, scan = self._robot.base.latest, self._robot.base.scan
+        self._mapper.update(scan, state.pose if scan is None else self._robot.base.pose_at(scan.stamp))
         if self._last_base is not None:
             self.path_length += state.pose.distance(self._last_base.pose)
         self._last_base = state

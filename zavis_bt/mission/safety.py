@@ -91,6 +91,10 @@ class SafeBase:
         """Return the state read at the start of the tick."""
         return self.latest
 
+    def pose_at(self, stamp: float) -> Pose2D:
+        """Return the odometry pose at a time within the last second [s]."""
+        return self._robot.base.pose_at(stamp)
+
     def command(self, twist: Twist2D) -> None:
         """Ask for a velocity; it is sent at the end of the tick, limited to what is safe."""
         self._requested = twist

@@ -84,7 +84,7 @@ def _points(frame: RgbdFrame, pixels: NDArray[np.intp]) -> tuple[FloatArray, Flo
     return depth, _to_map(depth, pixels, camera.fx, camera.fy, camera.cx, camera.cy, frame.transform_camera_to_map)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _sample(x0: float, y0: float, x1: float, y1: float, width: int, height: int, span: float) -> NDArray[np.intp]:
     """Return the distinct pixels (n, 2) ``[column, row]`` of a grid over the box's middle, inside the image."""
     pixels = np.empty((_GRID * _GRID, 2), dtype=np.intp)
@@ -105,7 +105,7 @@ def _sample(x0: float, y0: float, x1: float, y1: float, width: int, height: int,
     return pixels[:n]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _to_map(
     depth: FloatArray, pixels: NDArray[np.intp], fx: float, fy: float, cx: float, cy: float, transform: FloatArray
 ) -> FloatArray:
@@ -122,7 +122,7 @@ def _to_map(
     return points
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _nearest_thing(depth: FloatArray, seen: NDArray[np.bool_], gap: float, share: float) -> NDArray[np.intp]:
     """Return the indices of the nearest run of depths without a gap that holds a share of all that are seen."""
     order = np.flatnonzero(seen)
@@ -142,7 +142,7 @@ def _nearest_thing(depth: FloatArray, seen: NDArray[np.bool_], gap: float, share
     return order
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _landmark_surface(depth: FloatArray, points: FloatArray, width: float) -> tuple[float, float, float, float, float]:
     """Return middle (x, y, z), horizontal extent and depth of a landmark; depth 0 if there is none."""
     upright = (depth > 0) & (points[:, 2] > _FLOOR)
@@ -157,7 +157,7 @@ def _landmark_surface(depth: FloatArray, points: FloatArray, width: float) -> tu
     return middle[0], middle[1], middle[2], _extent(surface), reference
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _object_surface(depth: FloatArray, points: FloatArray) -> tuple[float, float, float, float, float]:
     """Return median (x, y, z), horizontal extent and depth of an object; depth 0 if there is none."""
     seen = depth > 0
@@ -169,7 +169,7 @@ def _object_surface(depth: FloatArray, points: FloatArray) -> tuple[float, float
     return x, y, z, _extent(surface), float(np.median(depth[thing]))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _extent(points: FloatArray) -> float:
     """Return the horizontal length of (n, 3) points along their principal axis [m]."""
     x, y = points[:, 0] - points[:, 0].mean(), points[:, 1] - points[:, 1].mean()

@@ -18,7 +18,7 @@ _STRAIGHT_ON = 0.5  # largest bend where the outline cannot turn: that between n
 _GRAZE = 1.5  # factor on a diagonal step between cells of which one is not passable
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def search(
     cost: NDArray[np.float32],
     tight: NDArray[np.bool_],
@@ -90,17 +90,17 @@ def search(
     return np.empty(0, dtype=np.int32)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _bend(angle: float) -> float:
     return abs(angle - math.tau * math.floor(angle / math.tau + 0.5))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _fits(field: DistanceField, body: Body, width: int, cell: int, angle: float) -> bool:
     return body_fits(field, body, float(cell % width - BORDER), float(cell // width - BORDER), angle)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _heuristic(rows: int, cols: int) -> float:
     """Return the length of the shortest way in 16 directions on an empty grid."""
     long, short = max(rows, cols), min(rows, cols)
@@ -109,7 +109,7 @@ def _heuristic(rows: int, cols: int) -> float:
     return _SQRT5 * (long - short) + _SQRT2 * (2 * short - long)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _push(keys: NDArray[np.float32], cells: NDArray[np.int32], count: int, key: np.float32, cell: int) -> int:
     """Add to the binary heap; return its new size."""
     i = count
@@ -123,7 +123,7 @@ def _push(keys: NDArray[np.float32], cells: NDArray[np.int32], count: int, key: 
     return count + 1
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _pop(keys: NDArray[np.float32], cells: NDArray[np.int32], count: int) -> tuple[int, int]:
     """Take the least from the binary heap; return its cell and the heap's new size."""
     top, count = cells[0], count - 1
@@ -142,7 +142,7 @@ def _pop(keys: NDArray[np.float32], cells: NDArray[np.int32], count: int) -> tup
     return top, count
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _trace(parent: NDArray[np.int32], target: int) -> NDArray[np.int32]:
     count, cell = 0, target
     while cell >= 0:
@@ -156,7 +156,7 @@ def _trace(parent: NDArray[np.int32], target: int) -> NDArray[np.int32]:
     return way
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def pull_taut(
     field: DistanceField,
     barred: NDArray[np.bool_],
@@ -202,14 +202,14 @@ def pull_taut(
     return points[kept[:count]]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _at(mask: NDArray[np.bool_], u: float, v: float) -> bool:
     rows, cols = mask.shape
     found: bool = mask[min(max(round(v), 0), rows - 1), min(max(round(u), 0), cols - 1)]
     return found
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _line_price(cost: NDArray[np.float32], u0: float, v0: float, u1: float, v1: float) -> float:
     """Return the price of a straight line, sampled twice a cell; impassable cells that it grazes cost as their rim."""
     length = math.hypot(u1 - u0, v1 - v0)

@@ -17,7 +17,7 @@ _RING = 128  # buckets: a power of two, more than the longest step
 _ALL = 0xFFFF  # all steps are open
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def dijkstra(open_steps: NDArray[np.uint16], moves: Steps, source: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Find the shortest ways from one cell to all others.
 
@@ -75,7 +75,7 @@ def dijkstra(open_steps: NDArray[np.uint16], moves: Steps, source: int) -> tuple
     return length, parent
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _doubled(bucket: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the buckets with room for twice as many cells."""
     wider = np.empty((bucket.shape[0], 2 * bucket.shape[1]), dtype=np.int32)

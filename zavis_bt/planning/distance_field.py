@@ -50,7 +50,7 @@ def distance_field(obstacle: NDArray[np.bool_], closed: bool = False) -> Distanc
     return DistanceField(distance, nearest, obstacle, closed)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _transform(obstacle: NDArray[np.bool_]) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
     rows, cols = obstacle.shape
     nearest_row = _nearest_rows(obstacle)
@@ -91,7 +91,7 @@ def _transform(obstacle: NDArray[np.bool_]) -> tuple[NDArray[np.float32], NDArra
     return distance, nearest
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _nearest_rows(obstacle: NDArray[np.bool_]) -> NDArray[np.int32]:
     """Return for each cell the row of the nearest obstacle in its column; `_FAR` if there is none."""
     rows, cols = obstacle.shape

@@ -41,7 +41,7 @@ class Rollout(NamedTuple):
     """[cells per rad/s] of change in the turn rate."""
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def best_motion(
     field: DistanceField,
     body: Body,
@@ -89,7 +89,7 @@ def best_motion(
     return found[0], found[1], min(still, 1e9) - best
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _judge(
     field: DistanceField,
     body: Body,
@@ -149,7 +149,7 @@ def _judge(
     return score
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _can_brake(
     field: DistanceField,
     body: Body,
@@ -190,7 +190,7 @@ def _arc(speed: float, rate: float, seconds: float) -> tuple[float, float]:
     return turn, speed * seconds * (math.sin(half) / half if abs(half) > 1e-6 else 1.0)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _free(field: DistanceField, body: Body, u: float, v: float, yaw: float, obstacles: FloatArray, give: float) -> bool:
     if not body_fits(field, body, u, v, yaw):
         return False
@@ -210,7 +210,7 @@ def _free(field: DistanceField, body: Body, u: float, v: float, yaw: float, obst
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def motion_fits(
     field: DistanceField,
     body: Body,
@@ -235,7 +235,7 @@ def motion_fits(
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _path_distance(path: FloatArray, u: float, v: float) -> float:
     """Return the distance from a point to a polyline."""
     best = math.inf

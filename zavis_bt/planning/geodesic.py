@@ -77,7 +77,7 @@ class GeodesicField:
         return lengths * resolution
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _taut_lengths(
     field: DistanceField,
     barred: NDArray[np.bool_],
@@ -113,7 +113,7 @@ def _taut_lengths(
     return lengths
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _cells_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], points: FloatArray) -> NDArray[np.intp]:
     """Return the (n,) reached cells that stand for (n, 2) points (u, v), -1 where there is none."""
     cells = np.empty(len(points), dtype=np.intp)
@@ -122,7 +122,7 @@ def _cells_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], poi
     return cells
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _cell_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], u: float, v: float) -> int:
     """Return the reached cell that stands for a point, or -1."""
     rows, cols = shape
@@ -136,7 +136,7 @@ def _cell_for(steps: NDArray[np.int32], width: int, shape: tuple[int, int], u: f
     return found
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _pull(
     field: DistanceField,
     barred: NDArray[np.bool_],
@@ -167,7 +167,7 @@ def _pull(
     taut[cell] = length + math.hypot(col - u, row - v)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _corner(
     parent: NDArray[np.int32], taut: FloatArray, width: int, start: tuple[float, float], cell: int
 ) -> tuple[float, float, float]:
@@ -177,7 +177,7 @@ def _corner(
     return float(cell % width - BORDER), float(cell // width - BORDER), taut[cell]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _last_leg(
     field: DistanceField,
     barred: NDArray[np.bool_],

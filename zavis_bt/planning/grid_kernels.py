@@ -60,7 +60,7 @@ class Body(NamedTuple):
         )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def clearance(field: DistanceField, u: float, v: float) -> float:
     """Return the distance from a point to the centre of the nearest obstacle cell.
 
@@ -81,7 +81,7 @@ def clearance(field: DistanceField, u: float, v: float) -> float:
     return math.sqrt(best)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def body_fits(field: DistanceField, body: Body, u: float, v: float, yaw: float) -> bool:
     """Return whether the outline at a pose holds no centre of an obstacle cell."""
     rows, cols = field.distance.shape
@@ -96,7 +96,7 @@ def body_fits(field: DistanceField, body: Body, u: float, v: float, yaw: float) 
     return not _holds_obstacle(field, body, u, v, yaw)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _holds_obstacle(field: DistanceField, body: Body, u: float, v: float, yaw: float) -> bool:
     rows, cols = field.obstacle.shape
     cos, sin = math.cos(yaw), math.sin(yaw)
@@ -116,7 +116,7 @@ def _holds_obstacle(field: DistanceField, body: Body, u: float, v: float, yaw: f
     return False
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def largest_fit(field: DistanceField, body: Body, u: float, v: float, yaw: float) -> float:
     """Return the largest scale, at most 1, at which the outline at a pose holds no centre of an obstacle cell."""
     if body.disc:
@@ -138,7 +138,7 @@ def largest_fit(field: DistanceField, body: Body, u: float, v: float, yaw: float
     return scale
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def line_fits(
     field: DistanceField,
     barred: NDArray[np.bool_],
@@ -191,7 +191,7 @@ def line_fits(
             next_row += per_row
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _line_near_obstacle(
     field: DistanceField, row: int, col: int, radius: float, u0: float, v0: float, du: float, dv: float
 ) -> bool:
@@ -211,7 +211,7 @@ def _line_near_obstacle(
     return False
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def polyline_fits(field: DistanceField, barred: NDArray[np.bool_], radius: float, points: FloatArray) -> bool:
     """Return whether a disc can move along the (n, 2) points (u, v)."""
     for i in range(len(points) - 1):
@@ -220,7 +220,7 @@ def polyline_fits(field: DistanceField, barred: NDArray[np.bool_], radius: float
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def clearances(field: DistanceField, points: FloatArray) -> FloatArray:
     """Return the (n,) clearances of (n, 2) points (u, v)."""
     result = np.empty(len(points))
@@ -229,7 +229,7 @@ def clearances(field: DistanceField, points: FloatArray) -> FloatArray:
     return result
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def nearest_passable(passable: NDArray[np.bool_], u: float, v: float, within: float) -> tuple[int, int]:
     """Return ``(row, col)`` of the passable cell whose centre is nearest to a point, or (-1, -1) if none is within."""
     rows, cols = passable.shape

@@ -139,7 +139,7 @@ class Guide:
         return max(min(_SLOWEST + _SPEED_PER_CLEARANCE * spare, math.sqrt(2 * deceleration * left)), _SLOWEST)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _farthest_in_sight(
     field: DistanceField,
     barred: NDArray[np.bool_],

@@ -16,7 +16,7 @@ _SPACING = 0.5  # neighbouring points closer than this count once [cells]
 _OWN = 0.4  # points deeper inside the outline than this share of its inscribed radius are the robot's own parts
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def unmapped(
     field: DistanceField,
     body: Body,
@@ -59,7 +59,7 @@ def unmapped(
     return points[:count].copy()
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def deepest(body: Body, pose: tuple[float, float, float], points: FloatArray) -> float:
     """Return how deep the deepest of (n, 2) points (u, v) lies inside the outline; negative if none does."""
     found = -math.inf
@@ -68,7 +68,7 @@ def deepest(body: Body, pose: tuple[float, float, float], points: FloatArray) ->
     return found
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _depth(body: Body, pose: tuple[float, float, float], u: float, v: float) -> float:
     """Return how deep a point lies inside the outline; negative if it is outside."""
     du, dv = u - pose[0], v - pose[1]

@@ -56,7 +56,7 @@ class Track:
         return np.vstack((self.at(begin), inner, self.at(end)))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _project(points: FloatArray, arc: FloatArray, begin: float, end: float, x: float, y: float) -> tuple[float, float]:
     best, found = math.inf, max(begin, 0.0)
     for i in range(len(points) - 1):
@@ -72,7 +72,7 @@ def _project(points: FloatArray, arc: FloatArray, begin: float, end: float, x: f
     return found, math.sqrt(best) if best < math.inf else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def point_at(points: FloatArray, arc: FloatArray, position: float) -> tuple[float, float]:
     """Return the point of a polyline at an arc length; ``arc`` (n,) are those of its (n, 2) points."""
     i = 0

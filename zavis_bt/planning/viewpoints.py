@@ -108,7 +108,7 @@ def _viewpoint(landmark: Landmark, point: FloatArray) -> Viewpoint:
     return Viewpoint(_facing(landmark, point), landmark.position, landmark.radius, landmark.id, landmark.label)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _outermost(states: NDArray[np.int8], u: float, v: float, toward: FloatArray, reach: float) -> FloatArray:
     """Return the (n,) distances to the outermost occupied cell within reach, 0 if there is none."""
     rows, cols = states.shape
@@ -121,7 +121,7 @@ def _outermost(states: NDArray[np.int8], u: float, v: float, toward: FloatArray,
     return found
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _in_sight(states: NDArray[np.int8], points: FloatArray, u1: float, v1: float, own: float) -> NDArray[np.bool_]:
     """Return (n,) whether no occupied cell farther than ``own`` from the target lies on the line to it."""
     rows, cols = states.shape

@@ -5,6 +5,7 @@ is a pose in that frame. Grids are indexed ``[row, col]`` = ``[y, x]``. Camera f
 z forward; pixels are ``(u, v)`` = (column, row), pixel centres at half integers.
 """
 
+from zavis_bt.types.devices import DeviceReport
 from zavis_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridMap
 from zavis_bt.types.mission import Event, MissionResult, NodeState, NodeStatus, Observed
 from zavis_bt.types.motion import BaseState, FloatArray, PanTiltState, Path, Pose2D, Twist2D, wrap_angle
@@ -25,6 +26,7 @@ __all__ = [
     "CameraSpec",
     "Candidate",
     "Detection",
+    "DeviceReport",
     "Event",
     "FloatArray",
     "Footprint",

@@ -86,6 +86,8 @@ class BaseState:
     """Whether a wheel is held fast."""
     estop: bool = False
     """Whether the emergency stop is pressed."""
+    fault: str = ""
+    """Why the base cannot drive now, in plain words with the remedy; empty if it can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,3 +98,6 @@ class PanTiltState:
     tilt: float
     settled: bool
     stamp: float
+    """Time of the measurement on the mission's clock [s]."""
+    fault: str = ""
+    """Why the unit cannot move now, in plain words with the remedy; empty if it can."""

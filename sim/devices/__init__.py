@@ -1,0 +1,1 @@
+"""The simulated robot as hardware: devices that speak the real wire protocols."""
