@@ -1,0 +1,1 @@
+"""Driver of Pioneer robots over ARCOS."""
