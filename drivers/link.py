@@ -42,12 +42,12 @@ class Link:
             OSError,
             ValueError,
         ) as error:  # ValueError: a URL or speed it cannot use
-            raise DeviceError(f"{where}: {port}: {_plain(error, port)}") from error
+            raise DeviceError(f"{where}: {port}: {_plain(error)}") from error
         if self.is_tcp:
             _send_at_once(self._fd)
 
-    def read(self, timeout: float = 0.02) -> bytes:
-        """Return what has arrived, up to 4096 bytes; nothing if nothing comes within ``timeout`` [s].
+    def read(self, timeout: float = 0.02, size: int = _CHUNK) -> bytes:
+        """Return what has arrived, up to ``size`` bytes; nothing if nothing comes within ``timeout`` [s].
 
         Raises:
             DeviceError: The line is broken, or the other end has closed it.
@@ -55,9 +55,9 @@ class Link:
         try:
             if not select.select([self._fd], [], [], timeout)[0]:
                 return b""
-            data = os.read(self._fd, _CHUNK)
+            data = os.read(self._fd, size)
         except (OSError, ValueError) as error:
-            raise DeviceError(f"{self._where}: {self.port}: {_plain(error, self.port)}") from error
+            raise DeviceError(f"{self._where}: {self.port}: {_plain(error)}") from error
         if not data:
             raise DeviceError(f"{self._where}: {self.port}: the other end has closed the connection")
         return data
@@ -71,7 +71,7 @@ class Link:
         try:
             self._serial.write(data)
         except (OSError, ValueError) as error:
-            raise DeviceError(f"{self._where}: {self.port}: {_plain(error, self.port)}") from error
+            raise DeviceError(f"{self._where}: {self.port}: {_plain(error)}") from error
 
     def set_baud(self, baud: int) -> None:
         """Change the speed of a serial port; does nothing on TCP."""
@@ -80,8 +80,11 @@ class Link:
 
     def close(self) -> None:
         """Close the line; never raises, may be called twice. The reader's thread must have ended before."""
+        line = getattr(self._serial, "_socket", None)
         with contextlib.suppress(OSError):
             self._serial.close()
+        if line is not None:
+            line.close()  # pyserial leaves the socket open if the other end was gone before
 
 
 def _send_at_once(fd: int) -> None:
@@ -90,7 +93,7 @@ def _send_at_once(fd: int) -> None:
         line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
-def _plain(error: BaseException, port: str) -> str:
+def _plain(error: BaseException) -> str:
     """Say what happened and what helps, in one line."""
     cause: BaseException | None = error
     while cause is not None:
@@ -98,8 +101,9 @@ def _plain(error: BaseException, port: str) -> str:
             return "no such host (check the name, or give the address in numbers)"
         if isinstance(cause, TimeoutError):
             return "no answer (is the device switched on, and the address right?)"
-        if isinstance(cause, OSError) and cause.errno in _REMEDIES:
-            return _REMEDIES[cause.errno]
+        number = cause.args[0] if cause.args else None  # errno, also in termios.error
+        if number in _REMEDIES:
+            return _REMEDIES[number]
         cause = cause.__cause__ or cause.__context__
     return " ".join(str(error).split())
 

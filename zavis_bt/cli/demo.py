@@ -18,12 +18,12 @@ def demo(
 ) -> None:
     """Find the red wallet in the built-in apartment with a simulated Pioneer 3-AT."""
     from zavis_bt.cli.files import load_robot_spec, resolve_tree
-    from zavis_bt.cli.run import report, run_mission
+    from zavis_bt.cli.run import report, run_mission, simulated
     from zavis_bt.cli.simulate import Choices
 
     choices = Choices(tree=resolve_tree("search"), robot=load_robot_spec("pioneer3at"), method="search", real_time=view)
     print(f"Looking for “{target}” in the built-in apartment …")
-    result, folder = run_mission(choices, "apartment", target, seed=seed, start=None, record=record, view=view)
+    result, folder = run_mission(simulated(choices, "apartment", target, seed, None), record=record, view=view)
     report(result, folder)
     if not result.success:
         raise typer.Exit(4)

@@ -13,6 +13,7 @@ from zavis_bt.types import GridMap, Pose2D, RobotSpec
 
 if TYPE_CHECKING:
     from zavis_bt.mapping import SemanticMap
+    from zavis_bt.mission.robot_file import RobotFile
 
 
 def resolve_tree(name: str) -> Path:
@@ -25,8 +26,8 @@ def resolve_tree(name: str) -> Path:
     return _resolve(name, "tree", {path.stem: path for path in sorted(folder.glob("*.yaml"))})
 
 
-def load_robot_spec(name: str) -> RobotSpec:
-    """Return the model of the robot of that file or profile.
+def load_robot_file(name: str) -> RobotFile:
+    """Return the robot of that file or profile.
 
     Raises:
         InputError: There is neither, or the file is wrong.
@@ -34,7 +35,16 @@ def load_robot_spec(name: str) -> RobotSpec:
     from drivers.profiles import builtin_robot, builtin_robots
     from zavis_bt.mission.robot_file import load_robot
 
-    return load_robot(_resolve(name, "robot", {robot: builtin_robot(robot) for robot in builtin_robots()})).spec
+    return load_robot(_resolve(name, "robot", {robot: builtin_robot(robot) for robot in builtin_robots()}))
+
+
+def load_robot_spec(name: str) -> RobotSpec:
+    """Return the model of the robot of that file or profile.
+
+    Raises:
+        InputError: There is neither, or the file is wrong.
+    """
+    return load_robot_file(name).spec
 
 
 def _resolve(name: str, what: str, built_in: Mapping[str, Path]) -> Path:

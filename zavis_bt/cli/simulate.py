@@ -28,8 +28,8 @@ from zavis_bt.mission import (
     WithTimeout,
 )
 from zavis_bt.perception import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS
-from zavis_bt.protocols import Human
-from zavis_bt.tree import Registry, load_tree
+from zavis_bt.protocols import Clock, Human
+from zavis_bt.tree import Registry, Tree, load_tree
 from zavis_bt.types import MissionResult, Pose2D, RobotSpec
 
 CONFIRMATIONS = ("oracle", "terminal", "timeout")
@@ -96,7 +96,7 @@ class SimulatedMission:
             InputError: Tree, target, start or a name is wrong; nothing has moved.
         """
         search = Search(target, choices.known, choices.unknown)
-        tree = load_tree(choices.tree, Registry.from_entry_points(), {"target": target, **dict(choices.inputs)})
+        tree = open_tree(choices, target)
         self.simulation = Simulation(world, choices.robot, start, task.seed, real_time=choices.real_time)
         clock = self.simulation.clock
         self._jobs: ThreadJobs | InlineJobs = ThreadJobs() if choices.real_time else InlineJobs(clock)
@@ -109,7 +109,7 @@ class SimulatedMission:
             detector=SimDetector(choices.known, self.simulation.rng("detector")),
             matcher=SimMatcher(similarity, self.simulation.rng("matcher")),
             prior=make_prior(choices.prior),
-            human=_human(choices, Oracle(wanted), self.simulation, pictures),
+            human=human_of(choices, Oracle(wanted), clock, pictures),
             rng=self.simulation.rng("planning"),
             details=lambda: {"collisions": self.simulation.collisions},
         )
@@ -124,15 +124,36 @@ class SimulatedMission:
         try:
             return self.mission.run()
         finally:
-            self.simulation.robot.close()
-            self._jobs.close()
+            self.close()
+
+    def close(self) -> None:
+        """Stop the robot; may be called twice."""
+        self.simulation.robot.close()
+        self._jobs.close()
 
 
-def _human(choices: Choices, oracle: Oracle, simulation: Simulation, pictures: Path) -> Human:
+def open_tree(choices: Choices, target: str) -> Tree:
+    """Return the tree with its inputs.
+
+    Raises:
+        TreeError: It has faults.
+    """
+    return load_tree(choices.tree, Registry.from_entry_points(), {"target": target, **dict(choices.inputs)})
+
+
+def human_of(choices: Choices, oracle: Human, clock: Clock, pictures: Path) -> Human:
+    """Return who confirms.
+
+    Args:
+        choices: Whom the user wants.
+        oracle: The simulated person.
+        clock: Of the mission.
+        pictures: Where questions at the terminal leave their pictures.
+    """
     match choices.confirm:
         case "terminal":
             person = TerminalHuman(pictures)
             return person if choices.real_time else TimeStandsStill(person)
         case "timeout":
-            return WithTimeout(Nobody(), simulation.clock, 30.0, accept=True)
+            return WithTimeout(Nobody(), clock, 30.0, accept=True)
     return oracle

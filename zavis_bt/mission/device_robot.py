@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, cast
 
-from zavis_bt.errors import InputError, did_you_mean
+from zavis_bt.errors import DeviceError, InputError, did_you_mean
 from zavis_bt.geometry import transform_camera_to_map
 from zavis_bt.mission.robot_file import DeviceSetting, RobotFile
 from zavis_bt.protocols import Base, Camera, Clock, Device, DeviceContext, DeviceFactory, Lidar, PanTilt
@@ -16,6 +16,7 @@ GROUP = "zavis_bt.devices"
 """Entry point group of the drivers, named ``<kind>.<driver>``, for example ``base.pioneer``."""
 KINDS = ("base", "pan_tilt", "lidar", "camera")
 """The devices of a robot, in the order they are opened."""
+_POLL = 0.02  # [s]
 
 
 class DeviceRobot:
@@ -68,6 +69,32 @@ class DeviceRobot:
     def camera(self) -> Camera:
         """The camera on the pan-tilt unit."""
         return cast(Camera, self.devices["camera"])
+
+    def wait_until_ready(self, timeout: float = 5.0) -> None:
+        """Wait until every device has delivered something.
+
+        Args:
+            timeout: How long at most [s].
+
+        Raises:
+            DeviceError: A device says nothing for that long, or cannot work.
+        """
+        deadline = self._clock.now() + timeout
+        while missing := self._missing():
+            if self._clock.now() > deadline:
+                kind, what = missing
+                place = f"{self._file.path}: devices.{kind}"
+                raise DeviceError(f"{place}: {what} for {timeout:g} s ('zavis doctor' tells more)")
+            self._clock.wait_until(self._clock.now() + _POLL)
+
+    def _missing(self) -> tuple[str, str] | None:
+        """Return the first device that is not ready, and what is amiss."""
+        for kind, state in (("base", self.base.state()), ("pan_tilt", self.pan_tilt.state())):
+            if state.fault:
+                return kind, state.fault
+        if self.lidar.scan() is None:
+            return "lidar", "no scan"
+        return ("camera", "no frame") if self.camera.frame() is None else None
 
     def close(self) -> None:
         """Stop all motion, the base first, and release the devices."""
