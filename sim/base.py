@@ -7,6 +7,9 @@ import math
 from sim.physics import Physics
 from zavis_bt.types import BaseLimits, BaseState, Pose2D, Twist2D
 
+_GRIP = 3.0  # how hard tyres can brake on a floor [m/s²]
+_SPIN_GRIP = 10.0  # [rad/s²]
+
 
 class SimBase:
     """A differential-drive base with watchdog, bumper, stall detection and emergency stop."""
@@ -46,8 +49,10 @@ class SimBase:
             self._physics.command(twist.linear, twist.angular, self._limits, self._watchdog)
 
     def stop(self) -> None:
-        """Slow down to rest."""
-        self._physics.command(0.0, 0.0, self._limits, 0.0)
+        """Come to rest as fast as the wheels grip."""
+        limits = self._limits
+        linear, angular = max(_GRIP, limits.linear_acceleration), max(_SPIN_GRIP, limits.angular_acceleration)
+        self._physics.drive(0.0, 0.0, linear, angular)
 
     def press_estop(self, pressed: bool = True) -> None:
         """Press or release the emergency stop, as a person standing by would."""

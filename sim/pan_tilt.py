@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import NamedTuple
 
@@ -34,7 +35,13 @@ class SimPanTilt:
         return PanTiltState(move.pan.at(elapsed)[0], move.tilt.at(elapsed)[0], settled, now)
 
     def move_to(self, pan: float, tilt: float) -> None:
-        """Start a move to these angles [rad], clipped to the limits."""
+        """Start a move to these angles [rad], clipped to the limits.
+
+        Raises:
+            ValueError: An angle is not a number.
+        """
+        if math.isnan(pan) or math.isnan(tilt):
+            raise ValueError(f"pan {pan}, tilt {tilt}: not an angle")
         pan, tilt = self._clipped(pan, tilt)
         move = self._moves[-1]
         if (pan, tilt) != (move.pan.target, move.tilt.target):

@@ -42,6 +42,8 @@ def render(
     shape = window[3] - window[1], window[2] - window[0]
     rgb, depth = np.empty((*shape, 3), dtype=np.uint8), np.empty(shape, dtype=np.float32)
     _render(scene.solids, view, bounds, scene.paints, window, depth_range, rgb, depth)
+    rgb.setflags(write=False)
+    depth.setflags(write=False)
     return rgb, depth
 
 
