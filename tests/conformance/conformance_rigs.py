@@ -1,0 +1,175 @@
+"""Everything that plays a robot, behind one small harness, so that a claim is written once for all of them.
+
+``lockstep``  the simulator in this process, whose clock advances the world
+``wire``      the drivers against the simulated devices, over sockets and a CAN bus, in real time
+``hardware``  the robot of the file that the environment variable ``ZAVIS_HARDWARE`` names; left out if it is not set
+
+On hardware the claims that need to know where things really are, or that would drive far, are skipped. What is left
+turns and drives a few decimetres, at most 0.15 m/s and 0.4 rad/s, and pans by 20 degrees: put the robot on the floor
+with a metre of free space around it, keep a hand on the emergency stop, and run
+
+    ZAVIS_HARDWARE=my.robot.yaml pytest tests/conformance -k hardware
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from conformance_room import MIDDLE, ROBOT, room
+
+from sim import Simulation
+from zavis_bt.mission.clock import WallClock
+from zavis_bt.mission.device_robot import DeviceRobot
+from zavis_bt.mission.robot_file import load_robot
+from zavis_bt.protocols import Clock, Robot
+from zavis_bt.types import BaseState, Pose2D, Twist2D
+
+HARDWARE = os.environ.get("ZAVIS_HARDWARE", "")
+KINDS = ("lockstep", "wire", *(["hardware"] if HARDWARE else []))
+PERIOD = 0.1
+"""Between two commands, as a mission gives them [s]."""
+PATIENCE = 20.0
+"""How long to wait for what must happen [s]; in lock step this costs nothing."""
+
+
+@dataclass
+class Rig:
+    """A robot, its clock, and what is known of it from outside."""
+
+    kind: str
+    robot: Robot
+    clock: Clock
+    start: Pose2D
+    where: Callable[[], Pose2D] | None = None
+    """The base's true pose; unknown on hardware."""
+    cruise: float = 0.4
+    """A speed for tests [m/s]."""
+    spin: float = 0.8
+    """A turning rate for tests [rad/s]."""
+    sweep: float = 0.8
+    """An angle for tests of the pan axis [rad]."""
+    latency: float = 0.0
+    """From a command to its effect in the state, at most [s]."""
+    stale: float = 0.03
+    """Age of a state that has just been read, at most [s]."""
+    jump: float = 1e-6
+    """Between two poses that follow one another, beyond what the motion explains [m, rad]."""
+    slack: float = 0.02
+    """Error of the states' stamps [s]."""
+    linear_error: float = 1e-9
+    """Of a measured velocity [m/s]."""
+    angular_error: float = 1e-9
+    """Of a measured rate [rad/s]."""
+    angle_error: float = 1e-6
+    """Of a joint at its target [rad]."""
+    first: Pose2D = field(init=False)
+    """By odometry, when the robot was opened."""
+
+    def __post_init__(self) -> None:
+        self.first = self.robot.base.state().pose
+
+    def truth(self) -> Pose2D:
+        """Return where the base really is; the test is skipped where nobody knows."""
+        if self.where is None:
+            pytest.skip("where the base really is, is known in simulation only")
+        return self.where()
+
+    def only_simulated(self, why: str) -> None:
+        if self.where is None:
+            pytest.skip(f"not on hardware: {why}")
+
+    def run(self, seconds: float) -> None:
+        """Let time pass."""
+        self.clock.wait_until(self.clock.now() + seconds)
+
+    def drive(self, twist: Twist2D, seconds: float) -> list[BaseState]:
+        """Command a velocity again and again; return the states on the way."""
+        states, end = [], self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.robot.base.command(twist)
+            self.run(min(PERIOD, end - self.clock.now()))
+            states.append(self.robot.base.state())
+        return states
+
+    def wait_for(self, condition: Callable[[], bool], step: float = 0.02) -> bool:
+        """Let time pass until the condition holds; return whether it came to that."""
+        end = self.clock.now() + PATIENCE
+        while not condition():
+            if self.clock.now() > end:
+                return False
+            self.run(step)
+        return True
+
+    def stands(self) -> bool:
+        twist = self.robot.base.state().twist
+        return abs(twist.linear) < 0.005 and abs(twist.angular) < 0.01
+
+    def settled(self) -> bool:
+        return self.robot.pan_tilt.state().settled
+
+    def rest(self) -> None:
+        """Come to rest, so that a test may begin."""
+        self.robot.base.stop()
+        self.robot.pan_tilt.stop()
+        heard = self.robot.base.state().stamp
+        assert self.wait_for(lambda: self.robot.base.state().stamp > heard + 0.15 or self.kind == "lockstep")
+        assert self.wait_for(self.stands)
+        assert self.wait_for(self.settled)
+
+
+def duration(call: Callable[[], object], times: int = 200) -> float:
+    """Return the median wall time of a call [s]."""
+    spent = []
+    for _ in range(times):
+        begin = time.perf_counter()
+        call()
+        spent.append(time.perf_counter() - begin)
+    return sorted(spent)[times // 2]
+
+
+@contextmanager
+def open_rig(kind: str, folder: Path, start: Pose2D = MIDDLE) -> Iterator[Rig]:
+    """Open one robot, and close it again with whatever it stands in."""
+    with ExitStack() as stack:
+        rig = {"lockstep": _lockstep, "wire": _wire, "hardware": _hardware}[kind](stack, folder, start)
+        stack.callback(rig.robot.close)
+        yield rig
+
+
+def _lockstep(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
+    simulation = Simulation(room(), load_robot(_robot_file(folder)).spec, start)
+    return Rig("lockstep", simulation.robot, simulation.clock, start, lambda: simulation.truth)
+
+
+def _wire(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
+    pytest.skip("no devices yet")
+
+
+def _hardware(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
+    clock, origin = WallClock(), Pose2D(0.0, 0.0)
+    robot = DeviceRobot(load_robot(HARDWARE), clock, origin)
+    return Rig(
+        "hardware",
+        robot,
+        clock,
+        origin,
+        cruise=0.15,
+        spin=0.4,
+        sweep=0.35,
+        latency=0.5,
+        linear_error=0.03,
+        angular_error=0.1,
+        angle_error=0.01,
+    )
+
+
+def _robot_file(folder: Path, devices: str = "") -> Path:
+    path = folder / "conformance.robot.yaml"
+    path.write_text(ROBOT + devices, encoding="utf-8")
+    return path
