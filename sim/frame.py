@@ -119,12 +119,18 @@ class SimFrame(RgbdFrame):
 
 
 def instances_of(frame: RgbdFrame) -> tuple[InstanceView, ...]:
-    """Return what a frame really shows.
+    """Return what a frame really shows, be it from the simulated camera at hand or from one on the network.
 
     Raises:
         InputError: The frame does not come from the simulated camera.
     """
-    if not isinstance(frame, SimFrame):
+    if isinstance(frame, SimFrame):
+        return frame.instances
+    annotations = getattr(frame, "annotations", None)  # frames off the wire have the same fields
+    if annotations is None:
         kind = type(frame).__name__
-        raise InputError(f"simulated perception: got a {kind} (it can only judge frames of the simulated camera)")
-    return frame.instances
+        raise InputError(
+            f"simulated perception: got a {kind} (it can only judge frames of the simulated camera; "
+            "on a robot file's devices that is 'camera: {driver: sim}' with annotations)"
+        )
+    return tuple(InstanceView(*annotation) for annotation in annotations)

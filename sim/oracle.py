@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from sim.frame import InstanceView, instances_of
 from sim.perception.words import normal_name
+from sim.targets import Similarity, views_named
 from zavis_bt.protocols import Clock
 from zavis_bt.types import Answer, Box, Candidate
 
@@ -70,11 +71,34 @@ class Oracle:
 
     def _judge(self, target: str, candidates: Sequence[Candidate]) -> Answer:
         for number, candidate in enumerate(candidates):
-            for instance in instances_of(candidate.frame):
-                if self._is_meant(instance) and shows(candidate.box, instance.box):
+            for instance in self._meant(instances_of(candidate.frame)):
+                if shows(candidate.box, instance.box):
                     return Answer(number, f"it shows {instance.id}")
         return Answer(None, f"none of {len(candidates)} shows the {target}")
+
+    def _meant(self, instances: Sequence[InstanceView]) -> Iterable[InstanceView]:
+        return filter(self._is_meant, instances)
 
     def _is_meant(self, instance: InstanceView) -> bool:
         names = instance.id, instance.category, f"{instance.colour} {instance.category}"
         return not self._targets.isdisjoint(map(normal_name, names))
+
+
+class NamedOracle(Oracle):
+    """An oracle that knows no more of the world than the text and the frames it is shown."""
+
+    def __init__(self, text: str, similarity: Similarity, clock: Clock | None = None, answer_time: float = 0.0) -> None:
+        """Set up a person who has what a text names in mind.
+
+        Args:
+            text: For example "the red wallet".
+            similarity: Of two names, 1 for the same; very similar ones are synonyms.
+            clock: The mission's clock; needed for an answer that takes time.
+            answer_time: How long the person takes to answer [s].
+        """
+        super().__init__((), clock, answer_time)
+        self._text, self._similarity = text, similarity
+
+    def _meant(self, instances: Sequence[InstanceView]) -> Iterable[InstanceView]:
+        ids = views_named(instances, self._text, self._similarity)
+        return (instance for instance in instances if instance.id in ids)
