@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 from zavis_bt import __version__
-from zavis_bt.cli import bench, demo, run, tree, world
+from zavis_bt.cli import bench, demo, doctor, drive, run, tree, world
 from zavis_bt.errors import ZavisError
 
 USER_ERROR, BUG, FAILED, INTERRUPTED = 1, 3, 4, 130
@@ -56,6 +56,8 @@ app = typer.Typer(
 app.command("demo")(demo.demo)
 app.command("run")(run.run)
 app.command("bench")(bench.bench)
+app.command("doctor")(doctor.doctor)
+app.command("drive")(drive.drive)
 app.add_typer(tree.app, name="tree")
 app.add_typer(world.app, name="world")
 

@@ -82,6 +82,11 @@ class SafeBase:
         self.latest: BaseState = robot.base.state()
         self.scan: LaserScan | None = None
 
+    @property
+    def reason(self) -> str:
+        """Why the latest twist was limited; empty if it was passed on as it was."""
+        return self._reason
+
     def read(self) -> None:
         """Read base and LiDAR: what everybody sees during this tick."""
         self.latest = self._robot.base.state()
