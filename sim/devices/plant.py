@@ -102,11 +102,33 @@ class Plant:
         ranges[ranges > lidar.range_max] = np.inf
         return ranges
 
+    def probe(self, mount: Pose2D, directions: FloatArray, range_max: float) -> FloatArray:
+        """Return how far rays from a point on the base reach now, without noise; may be called by any thread.
+
+        Args:
+            mount: Where they start, in the base's frame.
+            directions: (n,) of the rays, relative to the mount's [rad].
+            range_max: [m]
+
+        Returns:
+            (n,) distances to the nearest obstacle [m]; inf where there is none within ``range_max``.
+        """
+        sensor = Pose2D(*self.motion.true) @ mount
+        ranges = self._caster.cast(sensor.x, sensor.y, sensor.yaw + directions, range_max)
+        ranges[ranges > range_max] = np.inf
+        return ranges
+
     def frame(self) -> SimFrame:
         """Return what the camera sees now; rendered when its pixels are first asked for."""
         motion, stamp = self.motion, self.now
         pan, tilt = self.joints(stamp)
         return self._camera.capture(Pose2D(*motion.true), pan, tilt, stamp, Pose2D(*motion.odometry))
+
+    def step(self) -> None:
+        """Let 20 ms pass at once: the controllers work, the base moves. Not while it runs by itself."""
+        for controller in self.controllers:
+            controller(self.now)
+        self._physics.advance_to((self._physics.step + 1) / STEPS_PER_SECOND)
 
     def start(self) -> None:
         """Let time pass."""
@@ -127,6 +149,4 @@ class Plant:
             if late > _LOST:
                 zero += late
             time.sleep(max(-late, 0.0))
-            for controller in self.controllers:
-                controller(self.now)
-            self._physics.advance_to((self._physics.step + 1) / STEPS_PER_SECOND)
+            self.step()
