@@ -1,0 +1,1 @@
+"""Driver of planar LiDARs over SCIP 2.0."""
