@@ -1,0 +1,1 @@
+"""Pan-tilt units of two CiA 402 drives on CANopen."""
