@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
 
 from drivers.camera.annotated import AnnotatedFrame
-from drivers.camera.source import Capture, Source
+from drivers.camera.source import Capture, Pixels, Source
 from zavis_bt.errors import DeviceError
 from zavis_bt.protocols import DeviceContext
 from zavis_bt.types import DeviceReport, RgbdFrame
@@ -85,13 +89,13 @@ class CameraDevice:
             self._source.close()
 
     def _take(self, capture: Capture) -> None:
-        pose = self._context.camera_pose(capture.stamp)
+        if self._frame is not None and capture.stamp <= self._frame.stamp:  # the other end's time stands still
+            return
+        pose, pixels = self._context.camera_pose(capture.stamp), partial(_read_only, capture.pixels)
         if capture.annotations is None:
-            self._frame = RgbdFrame(capture.intrinsics, pose, capture.stamp, capture.pixels)
+            self._frame = RgbdFrame(capture.intrinsics, pose, capture.stamp, pixels)
         else:
-            frame = AnnotatedFrame(capture.intrinsics, pose, capture.stamp, capture.pixels)
-            frame.annotations = capture.annotations
-            self._frame = frame
+            self._frame = AnnotatedFrame(capture.intrinsics, pose, capture.stamp, pixels, capture.annotations)
         self._stamps.append((capture.stamp, self._context.clock.now()))
 
     def _recover(self, error: DeviceError) -> None:
@@ -109,3 +113,10 @@ class CameraDevice:
                 self._fault = ""
                 self._stamps.clear()
                 return
+
+
+def _read_only(pixels: Pixels) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    images = pixels()
+    for image in images:
+        image.setflags(write=False)
+    return images

@@ -67,8 +67,8 @@ def _decoded(image: WireImage, shape: Sequence[int], dtype: np.dtype[Any]) -> ND
         return np.frombuffer(image.data, dtype).reshape(shape)
     import cv2
 
-    flag = cv2.IMREAD_UNCHANGED if len(shape) == 2 else cv2.IMREAD_COLOR_RGB
+    flag = cv2.IMREAD_UNCHANGED if len(shape) == 2 else cv2.IMREAD_COLOR
     pixels = cv2.imdecode(np.frombuffer(image.data, np.uint8), flag) if image.data else None
     if pixels is None or pixels.shape != tuple(shape) or pixels.dtype != dtype:
         raise WireError(f"the {image.encoding} image is damaged")
-    return pixels
+    return cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB) if len(shape) == 3 else pixels
