@@ -48,6 +48,8 @@ class AnswerDecoder:
 
     def __init__(self) -> None:
         self._buffer = bytearray()
+        self.answers = 0
+        """Answers found since the start."""
         self.broken = 0
         """Answers left out since the start, because a checksum or a length was wrong."""
         self.garbage = 0
@@ -64,6 +66,7 @@ class AnswerDecoder:
                 answer = self._decode(bytes(buffer[begin : end + 1]))
                 if answer is not None:
                     answers.append(answer)
+                    self.answers += 1
             begin = search = end + 2
         del buffer[:begin]
         if len(buffer) > _LIMIT:

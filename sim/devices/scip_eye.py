@@ -1,0 +1,106 @@
+"""What a simulated LiDAR sees, turn by turn, in the numbers it sends."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drivers.lidar.codec import Parameters, ScanRequest
+from sim.devices.plant import Plant
+from sim.physics import STEPS_PER_SECOND
+
+NO_ECHO = 65533
+"""Range of a beam without return."""
+TOO_NEAR = 4
+"""Range of a beam whose return is nearer than the sensor can measure; there are several such codes."""
+_BRIGHTEST = 4000  # echo strength of what is right before the sensor
+_STALE = 0.2  # [s] without a step of the plant, after which its time stands still
+
+Numbers = NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sweep:
+    """One turn's measurement."""
+
+    time: float
+    """When, by ``time.monotonic`` [s]."""
+    ranges: Numbers
+    """(n,) of all steps [mm], or codes."""
+
+
+class Eye:
+    """Measures the plant's world; the same sweep for whoever asks within a turn."""
+
+    def __init__(self, plant: Plant, parameters: Parameters) -> None:
+        self._plant, self._parameters = plant, parameters
+        self._step = (0.0, -math.inf)  # the plant's time when it was last seen to step, and when that was
+        self._last: tuple[int, Sweep] | None = None
+        plant.controllers.append(self._note)
+
+    def close(self) -> None:
+        """Look no more at the plant's steps; may be called twice."""
+        if self._note in self._plant.controllers:
+            self._plant.controllers.remove(self._note)
+
+    def sweep(self, turn: int) -> Sweep:
+        """Return the measurement of this turn."""
+        if self._last is None or self._last[0] != turn:
+            self._last = turn, self._measure()
+        return self._last[1]
+
+    def _measure(self) -> Sweep:
+        sensor = self._parameters
+        step = math.tau / sensor.ares
+        begin = None
+        while begin != self._plant.now:  # the plant has not moved meanwhile
+            begin = self._plant.now
+            metres = self._plant.sweep(sensor.amax - sensor.amin + 1, (sensor.amin - sensor.afrt) * step, step)
+        millimetres = np.rint(np.minimum(metres * 1000, NO_ECHO)).astype(np.int32)
+        millimetres[millimetres > sensor.dmax] = NO_ECHO
+        millimetres[millimetres < sensor.dmin] = TOO_NEAR
+        return Sweep(self._time_of(begin), millimetres)
+
+    def _time_of(self, plant_time: float) -> float:
+        """Return when the plant was where it is at ``plant_time`` [s]: it is due at a step's end, not when asked."""
+        seen, at = self._step
+        now = time.monotonic()
+        if now - at > _STALE:
+            return now
+        return min(at + plant_time - seen, now)
+
+    def _note(self, now: float) -> None:
+        """Note that the plant is at ``now`` [s], and will next be one step further: that is due this moment."""
+        self._step = now + 1 / STEPS_PER_SECOND, time.monotonic()
+
+
+def chosen(sweep: Sweep, request: ScanRequest, first_step: int) -> Numbers:
+    """Return what a request gets of a sweep: ranges, or ranges and echo strengths in turn.
+
+    Args:
+        sweep: Of all steps.
+        request: Steps beyond what is measured get the code of no echo.
+        first_step: Of the sweep.
+    """
+    steps = np.full(request.end - request.start + 1, NO_ECHO, dtype=np.int32)
+    begin = max(request.start, first_step)
+    seen = sweep.ranges[begin - first_step : max(request.end - first_step + 1, 0)]
+    steps[begin - request.start :][: len(seen)] = seen
+    cluster = max(request.cluster, 1)
+    if cluster > 1:
+        steps = np.minimum.reduceat(steps, np.arange(0, len(steps), cluster))
+    ranges = np.minimum(steps, (1 << 6 * request.digits) - 1)
+    if not request.paired:
+        return ranges
+    return np.column_stack((ranges, _strengths(steps))).astype(np.int32).ravel()
+
+
+def _strengths(ranges: Numbers) -> Numbers:
+    """Return echo strengths, which fall with the distance; 0 without echo."""
+    strengths = _BRIGHTEST / (1 + ranges / 1000)
+    strengths[ranges == NO_ECHO] = 0
+    return np.rint(strengths).astype(np.int32)
