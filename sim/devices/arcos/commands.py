@@ -29,11 +29,14 @@ def obey(controller: Controller, command: Command) -> bool:
 
 
 def _with_integer(handle: _Set) -> Handler:
-    """Return a handler that takes the integer argument, and does nothing without."""
+    """Return a handler that takes the integer argument, and does nothing without.
+
+    It is a 16-bit number, so that clients that send two's complement instead of sign and magnitude are understood.
+    """
 
     def handler(controller: Controller, command: Command) -> None:
         if isinstance(command.argument, int):
-            handle(controller, command.argument)
+            handle(controller, (command.argument + 0x8000) % 0x10000 - 0x8000)
 
     return handler
 

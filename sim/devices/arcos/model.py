@@ -10,25 +10,20 @@ import numpy as np
 from drivers.pioneer.codec import Config
 from zavis_bt.types import FloatArray
 
-_FRONT_SONAR = (
-    (147, 136, 90),
-    (193, 119, 50),
-    (227, 79, 30),
-    (245, 27, 10),
-    (245, -27, -10),
-    (227, -79, -30),
-    (193, -119, -50),
-    (147, -136, -90),
+Mount = tuple[int, int, int]
+"""x, y [mm] and direction [degree] in the base's frame."""
+
+_P3AT_SONAR: tuple[Mount, ...] = (
+    *((147, 136, 90), (193, 119, 50), (227, 79, 30), (245, 27, 10)),
+    *((245, -27, -10), (227, -79, -30), (193, -119, -50), (147, -136, -90)),
+    *((-144, -136, -90), (-189, -119, -130), (-223, -79, -150), (-241, -27, -170)),
+    *((-241, 27, 170), (-223, 79, 150), (-189, 119, 130), (-144, 136, 90)),
 )
-_REAR_SONAR = (
-    (-144, -136, -90),
-    (-189, -119, -130),
-    (-223, -79, -150),
-    (-241, -27, -170),
-    (-241, 27, 170),
-    (-223, 79, 150),
-    (-189, 119, 130),
-    (-144, 136, 90),
+_P3DX_SONAR: tuple[Mount, ...] = (
+    *((69, 136, 90), (114, 119, 50), (148, 78, 30), (166, 27, 10)),
+    *((166, -27, -10), (148, -78, -30), (114, -119, -50), (69, -136, -90)),
+    *((-157, -136, -90), (-203, -119, -130), (-237, -78, -150), (-255, -27, -170)),
+    *((-255, 27, 170), (-237, 78, 150), (-203, 119, 130), (-157, 136, 90)),
 )
 
 
@@ -41,8 +36,8 @@ class PioneerModel:
     """Rotation for half the difference of the wheel speeds [rad/s per mm/s]."""
     distance_factor: float = 1.0
     """Distance of a unit of position [mm]."""
-    sonar: tuple[tuple[int, int, int], ...] = _FRONT_SONAR + _REAR_SONAR
-    """Transducers, by number: x, y [mm] and direction [degree] in the base's frame."""
+    sonar: tuple[Mount, ...] = _P3AT_SONAR
+    """Transducers, by number: eight for each array."""
     sonar_range: int = 5000
     """What a transducer says without an echo [mm]."""
     vel2_unit: int = 20
@@ -70,7 +65,16 @@ P3AT = PioneerModel(
 """Pioneer 3-AT with both sonar arrays and bumpers."""
 
 P3DX = PioneerModel(
-    replace(P3AT.config, subclass="p3dx-sh", serial_number="SIM-3DX", ticks_per_mm=128, rear_bumpers=5),
+    replace(
+        P3AT.config,
+        subclass="p3dx-sh",
+        serial_number="SIM-3DX",
+        velocity_top=2200,
+        rotation_velocity_top=500,
+        rev_count=16570,
+        ticks_per_mm=128,
+    ),
     diff_conv_factor=0.0056,
+    sonar=_P3DX_SONAR,
 )
 """Pioneer 3-DX with both sonar arrays and bumpers."""
