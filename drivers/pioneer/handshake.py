@@ -17,12 +17,13 @@ from drivers.pioneer.codec import (
     encode_sync,
     is_sip,
 )
+from drivers.pioneer.codec.framing import HEADER
 from drivers.pioneer.line import PacketLine
 from zavis_bt.errors import DeviceError
 
 _REPLY = 0.5  # waits for the answer to a SYNC [s]
 _TRIES = 5
-_SHAKE_AFTER = 2  # silent tries
+_SHAKE_AFTER = 3  # silent tries
 _DRAIN = 0.15  # a robot that is not in step may say so much more [s]
 _CONFIG_EVERY, _CONFIG_TRIES = 0.2, 5
 
@@ -83,11 +84,11 @@ def judge(sample: bytes) -> str:
     if not sample:
         return "no answer (is the robot switched on and its cable plugged in, and is no other program connected to it?)"
     shown = " ".join(sample[:24].decode("ascii", errors="replace").split())
-    printable = sum(32 <= byte < 127 or byte in b"\r\n\t\0" for byte in sample)
+    printable = sum(32 <= byte < 127 or byte in b"\r\n\t" for byte in sample)
+    if HEADER in sample:
+        return "answers like a Pioneer, but never to the handshake (switch the robot off and on)"
     if printable >= 0.9 * len(sample):
         return f"answers, but not as a Pioneer: '{shown}' (is this the port of another device, such as the LiDAR?)"
-    if b"\xfa\xfb" in sample:
-        return "answers like a Pioneer, but never to the handshake (switch the robot off and on)"
     return f"answers, but not as a Pioneer: bytes {sample[:8].hex(' ')} (wrong 'baud', or another device?)"
 
 
