@@ -64,6 +64,11 @@ class CameraServer:
         self._guard = threading.Lock()
         self._threads = [threading.Thread(target=self._accept, name="camera server", daemon=True)]
 
+    @property
+    def clients(self) -> int:
+        """Clients that are connected."""
+        return len(self._lines)
+
     def start(self) -> None:
         """Answer."""
         self._threads[0].start()

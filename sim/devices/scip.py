@@ -46,12 +46,19 @@ class ScipServer:
         self._listener.setblocking(False)
         self.port: int = self._listener.getsockname()[1]
         """Where it listens."""
+        self.silent = False
+        """Whether all it would say gets lost, while the line stays; set it to see what happens."""
         self._eye = Eye(plant, self.parameters)
         self._sensor = Sensor(self.parameters, self._eye, time.monotonic, uptime)
         self._wake, self._woken = socket.socketpair()
         self._host: socket.socket | None = None
         self._unsent = b""
         self._thread = threading.Thread(target=self._run, name="scip", daemon=True)
+
+    @property
+    def clients(self) -> int:
+        """Hosts that are connected: none or one."""
+        return int(self._host is not None)
 
     def start(self) -> None:
         """Serve."""
@@ -107,7 +114,7 @@ class ScipServer:
     def _send(self, data: bytes) -> None:
         if self._host is None:
             return
-        self._unsent += data
+        self._unsent += b"" if self.silent else data
         try:
             self._unsent = self._unsent[self._host.send(self._unsent) :]
         except BlockingIOError:
