@@ -131,7 +131,9 @@ class Plant:
         self._physics.advance_to((self._physics.step + 1) / STEPS_PER_SECOND)
 
     def start(self) -> None:
-        """Let time pass."""
+        """Let time pass. The first step is done at once, with the compiling that it may need."""
+        self.probe(self.spec.lidar.mount, np.zeros(1), self.spec.lidar.range_max)
+        self.step()
         self._running.set()
         self._thread.start()
 

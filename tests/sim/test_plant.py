@@ -29,13 +29,13 @@ def test_time_stands_still_until_the_start_and_after_the_end() -> None:
 
 def test_time_passes_at_the_wall_clocks_pace() -> None:
     plant = Plant(HALL, PIONEER, CENTRE)
+    begun = time.monotonic()
     plant.start()
-    wait_for(lambda: plant.now > 0.0)
-    begun, wall = plant.now, time.monotonic()
-    time.sleep(0.5)
-    passed, real = plant.now - begun, time.monotonic() - wall
+    while plant.now < 0.5:  # a loaded machine may fall behind
+        assert plant.now <= time.monotonic() - begun + 0.03  # but never ahead by more than the first step
+        assert time.monotonic() - begun < 20.0
+        time.sleep(0.005)
     plant.close()
-    assert passed <= real + 0.04  # never ahead; on a loaded machine it may fall behind
 
 
 def test_controllers_are_called_in_order_once_before_each_step() -> None:

@@ -16,6 +16,7 @@ from zavis_bt.errors import DeviceError
 _CHUNK = 4096
 _RETRY = 0.2  # [s]
 _STUCK = 1.0  # a client that takes nothing for so long is gone [s]
+_UNPLUGGED_MS = 3000  # and so is one whose computer acknowledges nothing for so long
 
 
 class ArcosServer:
@@ -90,6 +91,7 @@ class ArcosServer:
         except OSError:  # nobody came for a while, or close() was called
             return None
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        client.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _UNPLUGGED_MS)
         client.settimeout(_STUCK)
         return client
 
