@@ -198,3 +198,12 @@ def hall() -> World:
 
 HALL = hall()
 CENTRE = Pose2D(0.0, 0.0)
+
+
+def drive(client: Client, speed: int = 600) -> None:
+    """Set a connected robot going."""
+    client.send(CommandNumber.SETA, 4000)
+    client.send(CommandNumber.SETA, -4000)
+    client.send(CommandNumber.ENABLE, 1)
+    client.send(CommandNumber.VEL, speed)
+    client.sip(lambda sip: sip.left_velocity > 100)
