@@ -9,10 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.render import measure, render
+from sim.render import Picture, measure, render
+from sim.render_parts import Visible, visible_parts
+from sim.render_rays import IntArray
 from sim.scene import Scene
 from sim.visibility import Bounds, View, bounds_of, sightings
-from sim.world import WorldObject
 from zavis_bt.errors import InputError
 from zavis_bt.types import Box, CameraIntrinsics, FloatArray, RgbdFrame
 
@@ -71,6 +72,11 @@ class SimFrame(RgbdFrame):
         return bounds_of(self._scene.solids, self._view)
 
     @cached_property
+    def _visible(self) -> Visible:
+        scene = self._scene
+        return visible_parts(scene.parts, scene.wall_faces, scene.world.wall_height, self._view)
+
+    @cached_property
     def instances(self) -> tuple[InstanceView, ...]:
         """What is in sight, at least partly, nearest first; what is smaller than a few pixels is left out."""
         scene, bounds = self._scene, self._bounds
@@ -90,31 +96,39 @@ class SimFrame(RgbdFrame):
 
     def depth_at(self, pixels: NDArray[np.intp]) -> NDArray[np.float32]:
         """Return the depth at (n, 2) pixels ``[column, row]``, casting only these rays."""
-        return measure(self._scene, self._view, self._bounds, pixels, self._depth_range)
+        return measure(self._scene, self._view, self._visible, pixels, self._depth_range)
+
+    @property
+    def surfaces(self) -> IntArray:
+        """(h, w) what each pixel shows: index of the thing in `Scene.things`, or negative for walls, floor, nothing."""
+        return self._picture.surfaces
 
     def crop(self, box: Box) -> NDArray[np.uint8]:
         """Return the patch inside the box, rendering no more than it."""
-        if "_pixels" in self.__dict__:
+        if "_picture" in self.__dict__:
             return super().crop(box)
         width, height = self.intrinsics.width, self.intrinsics.height
         x0, y0 = int(np.clip(box.x0, 0, width - 1)), int(np.clip(box.y0, 0, height - 1))
         x1, y1 = int(np.clip(math.ceil(box.x1), x0 + 1, width)), int(np.clip(math.ceil(box.y1), y0 + 1, height))
-        return self._render((x0, y0, x1, y1))[0]
+        return self._render((x0, y0, x1, y1)).rgb
 
-    def _render_all(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    @cached_property
+    def _picture(self) -> Picture:
         return self._render((0, 0, self.intrinsics.width, self.intrinsics.height))
 
-    def _render(self, window: tuple[int, int, int, int]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        return render(self._scene, self._view, self._bounds, window, self._depth_range)
+    def _render_all(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        return self._picture.rgb, self._picture.depth
+
+    def _render(self, window: tuple[int, int, int, int]) -> Picture:
+        return render(self._scene, self._view, self._visible, window, self._depth_range)
 
     def _describe(
         self, index: int, box: list[float], full: list[float], fraction: float, area: float, distance: float
     ) -> InstanceView:
         thing = self._scene.things[index]
-        colour = thing.colour if isinstance(thing, WorldObject) else None
         is_furniture = index < len(self._scene.furniture)
         return InstanceView(
-            thing.id, thing.category, colour, is_furniture, Box(*box), Box(*full), fraction, area, distance
+            thing.id, thing.category, thing.colour, is_furniture, Box(*box), Box(*full), fraction, area, distance
         )
 
 

@@ -1,4 +1,4 @@
-"""A world as the camera sees it: boxes, walls and a floor, with their colours."""
+"""A world as the camera sees it: boxes, walls and a floor, and how they look."""
 
 from __future__ import annotations
 
@@ -10,8 +10,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.render_paint import box_paint, furniture_colour, object_colour, room_paint
-from sim.render_rays import CARRIES, COS, CX, HX, SIN, WALL_SLACK, IntArray, Solids, cast_rays
+from sim.appearance.dress import dress
+from sim.appearance.look import Look
+from sim.appearance.room import RoomLook
+from sim.render_parts import Parts, wall_faces
+from sim.render_rays import CARRIES, COS, CX, HX, SIN, WALL_SLACK, IntArray, Solids
 from sim.world import Furniture, World, WorldObject
 from zavis_bt.types import FloatArray
 
@@ -20,53 +23,65 @@ _HULL_TOLERANCE = 0.05  # [m] by which an object's centre may stick out of the f
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What can be seen of a world. Box i is ``furniture[i]``, after the furniture come the objects."""
+    """What can be seen of a world. Box i is `things` [i]; what is only needed for pictures is made when asked for."""
 
-    furniture: tuple[Furniture, ...]
-    objects: tuple[WorldObject, ...]
+    world: World
+    room: RoomLook
     solids: Solids
 
     @classmethod
-    def of(cls, world: World) -> Scene:
-        """Return the scene of a world; see `sim.render_rays` for what hides what."""
+    def of(cls, world: World, room: RoomLook | None = None) -> Scene:
+        """Return the scene of a world.
+
+        Args:
+            world: What there is; see `sim.render_rays` for what hides what.
+            room: How walls, floor and light look; bright and plain if None.
+        """
         boxes = _boxes(world)
         hulls = _hulls(world, boxes)
         boxes[hulls[hulls >= 0], CARRIES] = 1.0
         (x, y), grid = world.grid.origin, world.grid
-        room = np.array([x, y, grid.resolution, world.wall_height], dtype=np.float64)
-        solids = Solids(boxes, hulls, _clearance(np.ascontiguousarray(world.walls)), room)
+        measures = np.array([x, y, grid.resolution, world.wall_height], dtype=np.float64)
+        solids = Solids(boxes, hulls, _clearance(np.ascontiguousarray(world.walls)), measures)
         for array in solids:
             array.setflags(write=False)
-        return cls(world.furniture, world.objects, solids)
+        return cls(world, room or RoomLook(), solids)
+
+    @property
+    def furniture(self) -> tuple[Furniture, ...]:
+        """The first of the things."""
+        return self.world.furniture
 
     @property
     def things(self) -> tuple[Furniture | WorldObject, ...]:
-        """What each box is."""
-        return self.furniture + self.objects
+        """What each box is: after the furniture come the objects."""
+        return self.world.furniture + self.world.objects
+
+    @property
+    def parts(self) -> Parts:
+        """What the camera sees of the things."""
+        return self._dressed[0]
+
+    @property
+    def looks(self) -> tuple[Look, ...]:
+        """What was drawn for each thing."""
+        return self._dressed[1]
 
     @cached_property
-    def paints(self) -> NDArray[np.uint8]:
-        """(6 n + 9, 3) lit colours: the six faces of each box, then `room_paint`."""
-        colours = [furniture_colour(piece.category) for piece in self.furniture]
-        colours += [object_colour(thing.category, thing.colour) for thing in self.objects]
-        boxes = box_paint(colours, self.solids.boxes[:, COS : SIN + 1])
-        return np.vstack((boxes.reshape(-1, 3), room_paint()))
+    def room_paint(self) -> FloatArray:
+        """Look of the room, as `sim.render_shade` has it."""
+        return self.room.columns()
 
-    def cast(self, origin: FloatArray, directions: FloatArray) -> tuple[FloatArray, IntArray]:
-        """Return what rays see.
+    @cached_property
+    def wall_faces(self) -> FloatArray:
+        """(w, 4) see `sim.render_parts.wall_faces`."""
+        faces = wall_faces(self.world.walls, self.world.grid.resolution, self.world.grid.origin)
+        faces.setflags(write=False)
+        return faces
 
-        Args:
-            origin: (3,) where they start, map frame [m].
-            directions: (n, 3) of any length.
-
-        Returns:
-            (n,) distances in units of the direction's length, inf where nothing is hit; (n,) surface ids: the index
-            of a box, or `NOTHING`, `FLOOR`, `WALL` of `sim.render_rays`.
-        """
-        directions = np.ascontiguousarray(directions, dtype=np.float64)
-        distances, surfaces = np.empty(len(directions)), np.empty(len(directions), dtype=np.int32)
-        cast_rays(self.solids, np.asarray(origin, dtype=np.float64), directions, distances, surfaces)
-        return distances, surfaces
+    @cached_property
+    def _dressed(self) -> tuple[Parts, tuple[Look, ...]]:
+        return dress(self.world, self.room_paint)
 
 
 def _boxes(world: World) -> FloatArray:

@@ -43,6 +43,10 @@ class Furniture:
     """[m]"""
     height: float
     """[m]"""
+    colour: str | None = None
+    """A colour's name; None leaves it to the furniture's look."""
+    appearance: int | None = None
+    """Seed of its look; None makes it follow from id and world."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +68,8 @@ class WorldObject:
     """Id of the furniture that bears it."""
     colour: str | None = None
     """A colour's name, for objects told apart by it."""
+    appearance: int | None = None
+    """Seed of its look; None makes it follow from id and world."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,6 +18,7 @@ from zavis_bt.types import FREE, GridMap, Pose2D
 Name = Annotated[str, Field(min_length=1)]
 Metres = Annotated[float, Field(allow_inf_nan=False)]
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Seed = Annotated[int, Field(ge=0, strict=True)]
 
 
 class Placed(BaseModel):
@@ -29,6 +30,8 @@ class Placed(BaseModel):
     category: Name
     x: Metres
     y: Metres
+    colour: Name | None = None
+    appearance: Seed | None = None
 
 
 class FurnitureEntry(Placed):
@@ -41,7 +44,8 @@ class FurnitureEntry(Placed):
     def value(self) -> Furniture:
         """Return it in SI units."""
         yaw = math.radians(self.yaw_deg)
-        return Furniture(self.id, self.category, self.x, self.y, yaw, *self.size, self.height)
+        look = self.colour, self.appearance
+        return Furniture(self.id, self.category, self.x, self.y, yaw, *self.size, self.height, *look)
 
 
 class ObjectEntry(Placed):
@@ -50,11 +54,11 @@ class ObjectEntry(Placed):
     z: Metres
     size: tuple[Length, Length, Length]
     on: Name | None = None
-    colour: Name | None = None
 
     def value(self) -> WorldObject:
         """Return it as the world has it."""
-        return WorldObject(self.id, self.category, self.x, self.y, self.z, self.size, self.on, self.colour)
+        look = self.colour, self.appearance
+        return WorldObject(self.id, self.category, self.x, self.y, self.z, self.size, self.on, *look)
 
 
 class WorldFile(BaseModel):
