@@ -14,11 +14,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.render_parts import PLACE, PLANE, Parts, Visible
+from sim.render_parts import PLACE, Parts, Visible
 from sim.render_raster import Window, draw_part, draw_wall, rays_of
-from sim.render_rays import CARRIES, FLOOR, NOTHING, SLACK, WALL, IntArray, Solids
-from sim.render_resolve import choose
-from sim.render_shade import SKY, TINT, floor_colour, part_colour, wall_colour
+from sim.render_rays import CARRIES, IntArray, Solids
+from sim.render_resolve import resolve
+from sim.render_shade import shade_parts, shade_room
 from sim.scene import Scene
 from sim.visibility import View
 from zavis_bt.types import FloatArray
@@ -84,11 +84,10 @@ def _draw(
     ys: FloatArray,
     depths: FloatArray,
     numbers: IntArray,
-    hulls: IntArray,
 ) -> int:
     """Draw all that meets a window; returns how many layers hold something.
 
-    Layer 0 are the walls, layer 1 is what carries nothing, each further layer is one carrier, noted in ``hulls``.
+    Layer 0 are the walls, layer 1 is what carries nothing each further layer is one carrier.
     """
     width, height, layers = window[2] - window[0], window[3] - window[1], 2
     depths[:2, :height, :width] = math.inf
@@ -100,62 +99,13 @@ def _draw(
             continue
         layer = 1
         if solids.boxes[thing[0], CARRIES] > 0.0 and layers < len(depths):
-            layer, hulls[layers] = layers, thing[0]
+            layer = layers
             depths[layer, :height, :width] = math.inf
             layers += 1
         for row in range(thing[1], thing[2]):
             form = parts.forms[int(visible.rows[row, PLACE])]
             draw_part(visible.rows[row], form, row, window, xs, ys, depths[layer], numbers[layer])
     return layers
-
-
-@_kernel
-def _see(
-    solids: Solids,
-    parts: Parts,
-    view: View,
-    visible: Visible,
-    x: float,
-    y: float,
-    i: int,
-    j: int,
-    depths: FloatArray,
-    numbers: IntArray,
-    layers: int,
-) -> tuple[float, int, int]:
-    """Return what a pixel sees: depth, surface, and the number of the part's row or of the wall's face."""
-    r, eye = view.rotation, view.position[2]
-    dz = r[2, 0] * x + r[2, 1] * y + r[2, 2]
-    floor = -eye / dz if dz < 0.0 and eye > 0.0 else math.inf
-    wall, face = depths[0, i, j], numbers[0, i, j]
-    if eye > solids.room[3] and dz < 0.0:
-        top = _wall_top(solids, view, x, y, (solids.room[3] - eye) / dz)
-        if top < wall:
-            wall, face = top, -1
-    seen, nearest = 1, 1
-    if layers > 2:
-        seen, nearest = choose(solids, parts, visible, depths, numbers, layers, i, j, x, y)
-    for layer in (seen, nearest):
-        t = depths[layer, i, j]
-        if t <= floor and t < math.inf:
-            row = numbers[layer, i, j]
-            thing = parts.owners[int(visible.rows[row, PLACE])]
-            slack = solids.boxes[thing, SLACK] / math.sqrt(x * x + y * y + 1.0)
-            if t - slack <= wall:
-                return t, thing, row
-    if wall < floor:
-        return wall, WALL, face
-    return (floor, FLOOR, 0) if floor < math.inf else (math.inf, NOTHING, 0)
-
-
-@_kernel
-def _wall_top(solids: Solids, view: View, x: float, y: float, t: float) -> float:
-    """Return ``t`` if the ray comes down on a wall's top there, inf if not."""
-    r, p, room = view.rotation, view.position, solids.room
-    col = math.floor((p[0] + t * (r[0, 0] * x + r[0, 1] * y + r[0, 2]) - room[0]) / room[2])
-    row = math.floor((p[1] + t * (r[1, 0] * x + r[1, 1] * y + r[1, 2]) - room[1]) / room[2])
-    rows, cols = solids.clearance.shape
-    return t if 0 <= row < rows and 0 <= col < cols and solids.clearance[row, col] == 0 else math.inf
 
 
 @_kernel
@@ -178,21 +128,21 @@ def _measure(
 ) -> None:
     xs, ys = rays_of(view)
     count = _carriers(solids, visible) + 2
-    depths, numbers = np.empty((count, 1, 1)), np.empty((count, 1, 1), np.int32)
-    hulls = np.empty(count, np.int32)
+    depths, numbers = np.empty((count, 1, 1)), np.zeros((count, 1, 1), np.int32)
+    seen, surfaces, whose = np.empty((1, 1)), np.empty((1, 1), np.int32), np.empty((1, 1), np.int32)
     for k in range(len(pixels)):
-        col, row = pixels[k]
-        window = (int(col), int(row), int(col) + 1, int(row) + 1)
-        layers = _draw(solids, parts, view, visible, window, xs, ys, depths, numbers, hulls)
-        t, _, _ = _see(solids, parts, view, visible, xs[col], ys[row], 0, 0, depths, numbers, layers)
-        out[k] = _reading(t, depth_range)
+        col, row = int(pixels[k, 0]), int(pixels[k, 1])
+        tile = (col, row, col + 1, row + 1)
+        layers = _draw(solids, parts, view, visible, tile, xs, ys, depths, numbers)
+        resolve(solids, parts, view, visible, tile, xs, ys, depths, numbers, layers, seen, surfaces, whose)
+        out[k] = _reading(seen[0, 0], depth_range)
 
 
 @_kernel
 def _render(
     solids: Solids,
     parts: Parts,
-    room: FloatArray,
+    look: FloatArray,
     view: View,
     visible: Visible,
     window: Window,
@@ -204,65 +154,20 @@ def _render(
     xs, ys = rays_of(view)
     count = _carriers(solids, visible) + 2
     depths = np.empty((count, _TILE_HEIGHT, _TILE_WIDTH))
-    numbers, hulls = np.zeros((count, _TILE_HEIGHT, _TILE_WIDTH), np.int32), np.empty(count, np.int32)
+    numbers = np.zeros((count, _TILE_HEIGHT, _TILE_WIDTH), np.int32)
+    seen, colours = np.empty((_TILE_HEIGHT, _TILE_WIDTH)), np.empty((_TILE_HEIGHT, _TILE_WIDTH, 3))
+    what, whose = np.empty((_TILE_HEIGHT, _TILE_WIDTH), np.int32), np.empty((_TILE_HEIGHT, _TILE_WIDTH), np.int32)
     for top in range(window[1], window[3], _TILE_HEIGHT):
         for left in range(window[0], window[2], _TILE_WIDTH):
-            right, bottom = min(left + _TILE_WIDTH, window[2]), min(top + _TILE_HEIGHT, window[3])
-            tile = (left, top, right, bottom)
-            layers = _draw(solids, parts, view, visible, tile, xs, ys, depths, numbers, hulls)
-            for v in range(top, bottom):
-                for u in range(left, right):
-                    x, y = xs[u], ys[v]
-                    t, surface, number = _see(
-                        solids, parts, view, visible, x, y, v - top, u - left, depths, numbers, layers
-                    )
-                    i, j = v - window[1], u - window[0]
-                    depth[i, j], surfaces[i, j] = _reading(t, depth_range), surface
-                    colour = _colour(solids, parts, room, view, visible, x, y, t, surface, number)
+            tile = (left, top, min(left + _TILE_WIDTH, window[2]), min(top + _TILE_HEIGHT, window[3]))
+            layers = _draw(solids, parts, view, visible, tile, xs, ys, depths, numbers)
+            resolve(solids, parts, view, visible, tile, xs, ys, depths, numbers, layers, seen, what, whose)
+            shade_room(look, view, visible, tile, xs, ys, seen, what, whose, colours)
+            shade_parts(parts, look, view, visible, tile, xs, ys, seen, what, whose, colours)
+            for i in range(tile[3] - top):
+                v = top + i - window[1]
+                for j in range(tile[2] - left):
+                    u = left + j - window[0]
+                    depth[v, u], surfaces[v, u] = _reading(seen[i, j], depth_range), what[i, j]
                     for k in range(3):
-                        rgb[i, j, k] = np.uint8(min(max(colour[k], 0.0), 255.0))
-
-
-@_kernel
-def _colour(
-    solids: Solids,
-    parts: Parts,
-    room: FloatArray,
-    view: View,
-    visible: Visible,
-    x: float,
-    y: float,
-    t: float,
-    surface: int,
-    number: int,
-) -> tuple[float, float, float]:
-    """Return the colour of what a pixel sees."""
-    if surface == NOTHING:
-        return room[SKY] * room[TINT], room[SKY + 1] * room[TINT + 1], room[SKY + 2] * room[TINT + 2]
-    r, p, pixel = view.rotation, view.position, t / view.fx
-    dx = r[0, 0] * x + r[0, 1] * y + r[0, 2]
-    dy = r[1, 0] * x + r[1, 1] * y + r[1, 2]
-    dz = r[2, 0] * x + r[2, 1] * y + r[2, 2]
-    length = math.sqrt(dx * dx + dy * dy + dz * dz)
-    if surface == FLOOR:  # a pixel is stretched where the floor is seen at a slant
-        return floor_colour(room, p[0] + t * dx, p[1] + t * dy, pixel * max(0.5 * length / abs(dz), 1.0))
-    if surface == WALL:
-        if number < 0:
-            return wall_colour(room, 5, p[0] + t * dx, p[1] + t * dy, pixel)
-        side = int(visible.walls[number, PLANE])
-        along = p[1] + t * dy if side < 2 else p[0] + t * dx
-        return wall_colour(room, side, along, p[2] + t * dz, pixel)
-    part = int(visible.rows[number, PLACE])
-    toward = (-dx / length, -dy / length, -dz / length)
-    return part_colour(
-        visible.rows[number],
-        parts.forms[part],
-        parts.inverses[part],
-        parts.paints[part],
-        room,
-        x,
-        y,
-        t,
-        view.fx,
-        toward,
-    )
+                        rgb[v, u, k] = np.uint8(min(colours[i, j, k], 255.0))

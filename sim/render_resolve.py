@@ -1,4 +1,8 @@
-"""What a pixel sees where carriers and what they carry overlap."""
+"""What each pixel of a tile sees: of walls, floor and things before one another.
+
+The loops index arrays themselves: a call that takes arrays, once a pixel, would spend more time on counting references
+to them than on its work.
+"""
 
 from __future__ import annotations
 
@@ -6,83 +10,205 @@ import math
 
 from numba import njit
 
-from sim.render_parts import BALL, CUBE, HIGH_RADIUS, KIND, LOW_RADIUS, MATRIX, ORIGIN, PLACE, Parts, Visible
-from sim.render_rays import IntArray, Solids, is_hull
+from sim.render_parts import PLACE, Parts, Visible
+from sim.render_raster import Window
+from sim.render_rays import CZ, FLOOR, HZ, NOTHING, SLACK, WALL, IntArray, Solids
+from sim.visibility import View
 from zavis_bt.types import FloatArray
 
-_UNDERSIDE = -0.7  # z of the unit normals of undersides, at most
+WALL_LAYER, COMMON_LAYER = 0, 1
+"""Layers of the buffers: walls; things that carry nothing. Each further one is one carrier's."""
+WALL_TOP = -1
+"""Number of a wall's face that is no vertical one."""
+
+_UNDERSIDE = 0.12  # share of its height up to which a thing seen from below shows its underside
 
 _kernel = njit(cache=True, nogil=True, error_model="numpy")
 
 
 @_kernel
-def choose(
+def resolve(
     solids: Solids,
     parts: Parts,
+    view: View,
     visible: Visible,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
     depths: FloatArray,
     numbers: IntArray,
     layers: int,
-    i: int,
-    j: int,
-    x: float,
-    y: float,
-) -> tuple[int, int]:
-    """Return the layers of what a pixel sees, and of what is nearest; layer 0 (the walls) is not looked at.
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+) -> None:
+    """Find what the pixels of a tile see.
+
+    Args:
+        solids: Of the scene.
+        parts: Of the scene.
+        view: The camera.
+        visible: What it may show.
+        tile: Its pixels.
+        xs: Of the rays through the image's columns at optical depth 1.
+        ys: Of the rays through the image's rows at optical depth 1.
+        depths: Nearest depth in each layer.
+        numbers: The wall's face or the part's row it belongs to.
+        layers: How many layers hold something.
+        seen: Gets the depth.
+        surfaces: Gets what it is.
+        whose: Gets the number of the wall's face or of the part's row.
+    """
+    _background(solids, view, tile, xs, ys, depths[WALL_LAYER], numbers[WALL_LAYER], seen, surfaces, whose)
+    if layers == COMMON_LAYER + 1:
+        _things(solids, parts, visible, tile, xs, ys, depths, numbers, seen, surfaces, whose)
+    else:
+        _things_on_carriers(solids, parts, view, visible, tile, xs, ys, depths, numbers, layers, seen, surfaces, whose)
+
+
+@_kernel
+def _background(
+    solids: Solids,
+    view: View,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    numbers: IntArray,
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+) -> None:
+    """Fill in walls, floor and nothing; the walls' depth stays as it is in ``depths`` but for tops of walls."""
+    eye, height = view.position[2], solids.room[3]
+    a, b, c = view.rotation[2, 0], view.rotation[2, 1], view.rotation[2, 2]
+    for i in range(tile[3] - tile[1]):
+        for j in range(tile[2] - tile[0]):
+            steep = a * xs[tile[0] + j] + b * ys[tile[1] + i] + c
+            floor = -eye / steep if steep < 0.0 and eye > 0.0 else math.inf
+            wall = depths[i, j]
+            seen[i, j] = min(wall, floor)
+            surfaces[i, j] = WALL if wall < floor else FLOOR if floor < math.inf else NOTHING
+            whose[i, j] = numbers[i, j]
+    if eye > height:
+        _wall_tops(solids, view, tile, xs, ys, depths, seen, surfaces, whose)
+
+
+@_kernel
+def _wall_tops(
+    solids: Solids,
+    view: View,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+) -> None:
+    """Fill in tops of walls for a camera above them."""
+    p, r, room = view.position, view.rotation, solids.room
+    rows, cols = solids.clearance.shape
+    for i in range(tile[3] - tile[1]):
+        for j in range(tile[2] - tile[0]):
+            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            steep = r[2, 0] * x + r[2, 1] * y + r[2, 2]
+            if steep >= 0.0:
+                continue
+            t = (room[3] - p[2]) / steep
+            col = math.floor((p[0] + t * (r[0, 0] * x + r[0, 1] * y + r[0, 2]) - room[0]) / room[2])
+            row = math.floor((p[1] + t * (r[1, 0] * x + r[1, 1] * y + r[1, 2]) - room[1]) / room[2])
+            inside = 0 <= row < rows and 0 <= col < cols
+            if inside and t < seen[i, j] and solids.clearance[row, col] == 0:
+                depths[i, j] = seen[i, j] = t
+                surfaces[i, j], whose[i, j] = WALL, WALL_TOP
+
+
+@_kernel
+def _things(
+    solids: Solids,
+    parts: Parts,
+    visible: Visible,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    numbers: IntArray,
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+) -> None:
+    """Put the nearest thing before the background, where no thing in the tile carries another."""
+    owners, rows, boxes = parts.owners, visible.rows, solids.boxes
+    for i in range(tile[3] - tile[1]):
+        for j in range(tile[2] - tile[0]):
+            t = depths[COMMON_LAYER, i, j]
+            if t == math.inf:
+                continue
+            thing = owners[int(rows[numbers[COMMON_LAYER, i, j], PLACE])]
+            floor = seen[i, j] if surfaces[i, j] == FLOOR else math.inf
+            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            slack = boxes[thing, SLACK]
+            slack = slack / math.sqrt(x * x + y * y + 1.0) if slack > 0.0 else 0.0
+            if t <= floor and t - slack <= depths[WALL_LAYER, i, j]:
+                seen[i, j], surfaces[i, j], whose[i, j] = t, thing, numbers[COMMON_LAYER, i, j]
+
+
+@_kernel
+def _things_on_carriers(
+    solids: Solids,
+    parts: Parts,
+    view: View,
+    visible: Visible,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    numbers: IntArray,
+    layers: int,
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+) -> None:
+    """Put things before the background where some carry others.
 
     A carrier is open towards what it carries, but hides its underside. Seen is the farthest thing that nothing else
     hides. Of the things that carry nothing only the nearest counts: it hides the others.
     """
-    nearest = 1
-    for layer in range(2, layers):
-        if depths[layer, i, j] < depths[nearest, i, j]:
-            nearest = layer
-    if depths[nearest, i, j] == math.inf or nearest == 1:
-        return nearest, nearest
-    seen = nearest
-    for layer in range(1, layers):
-        t = depths[layer, i, j]
-        if t == math.inf or t <= depths[seen, i, j]:
-            continue
-        thing, hidden = _owner(parts, visible, numbers[layer, i, j]), False
-        for other in range(1, layers):
-            if depths[other, i, j] < t and not is_hull(
-                solids.hulls, thing, _owner(parts, visible, numbers[other, i, j])
-            ):
-                hidden = True
-                break
-        if not hidden and not _is_underside(parts, visible, numbers[layer, i, j], x, y, t):
-            seen = layer
-    return seen, nearest
-
-
-@_kernel
-def _owner(parts: Parts, visible: Visible, number: int) -> int:
-    return int(parts.owners[int(visible.rows[number, PLACE])])
-
-
-@_kernel
-def _is_underside(parts: Parts, visible: Visible, number: int, x: float, y: float, t: float) -> bool:
-    """Return whether a ray hits a part where it faces down."""
-    row = visible.rows[number]
-    part = int(row[PLACE])
-    form, inverse = parts.forms[part], parts.inverses[part]
-    px = row[ORIGIN] + t * (row[MATRIX] * x + row[MATRIX + 1] * y + row[MATRIX + 2])
-    py = row[ORIGIN + 1] + t * (row[MATRIX + 3] * x + row[MATRIX + 4] * y + row[MATRIX + 5])
-    pz = row[ORIGIN + 2] + t * (row[MATRIX + 6] * x + row[MATRIX + 7] * y + row[MATRIX + 8])
-    kind, gx, gy, gz = int(form[KIND]), px, py, pz
-    if kind == CUBE:
-        largest = max(max(abs(px), abs(py)), abs(pz))
-        gx = px if abs(px) == largest else 0.0
-        gy = py if abs(py) == largest else 0.0
-        gz = pz if abs(pz) == largest else 0.0
-    elif kind != BALL:
-        slope = (form[HIGH_RADIUS] - form[LOW_RADIUS]) / 2
-        radius = (form[LOW_RADIUS] + form[HIGH_RADIUS]) / 2 + slope * pz
-        gz = -slope * radius
-        if abs(pz) > 1.0 - 1e-7:
-            gx, gy, gz = 0.0, 0.0, pz
-    nx = inverse[0] * gx + inverse[3] * gy + inverse[6] * gz
-    ny = inverse[1] * gx + inverse[4] * gy + inverse[7] * gz
-    nz = inverse[2] * gx + inverse[5] * gy + inverse[8] * gz
-    return bool(nz < _UNDERSIDE * math.sqrt(nx * nx + ny * ny + nz * nz))
+    owners, rows, boxes, hulls = parts.owners, visible.rows, solids.boxes, solids.hulls
+    eye, a, b, c = view.position[2], view.rotation[2, 0], view.rotation[2, 1], view.rotation[2, 2]
+    for i in range(tile[3] - tile[1]):
+        for j in range(tile[2] - tile[0]):
+            nearest = COMMON_LAYER
+            for layer in range(COMMON_LAYER + 1, layers):
+                if depths[layer, i, j] < depths[nearest, i, j]:
+                    nearest = layer
+            if depths[nearest, i, j] == math.inf:
+                continue
+            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            best = nearest
+            if nearest != COMMON_LAYER:
+                steep = a * x + b * y + c
+                for layer in range(COMMON_LAYER, layers):
+                    t = depths[layer, i, j]
+                    if t == math.inf or t <= depths[best, i, j]:
+                        continue
+                    thing = owners[int(rows[numbers[layer, i, j], PLACE])]
+                    height = eye + t * steep - boxes[thing, CZ] + boxes[thing, HZ]
+                    hidden = steep > 0.0 and height < 2.0 * _UNDERSIDE * boxes[thing, HZ]
+                    for other in range(COMMON_LAYER, layers):
+                        if depths[other, i, j] < t:
+                            before, is_open = owners[int(rows[numbers[other, i, j], PLACE])], False
+                            for k in range(hulls.shape[1]):
+                                is_open = is_open or hulls[thing, k] == before
+                            hidden = hidden or not is_open
+                    if not hidden:
+                        best = layer
+            floor = seen[i, j] if surfaces[i, j] == FLOOR else math.inf
+            wall, length = depths[WALL_LAYER, i, j], math.sqrt(x * x + y * y + 1.0)
+            for k in range(2):
+                layer = nearest if k == 0 else best  # the latter, if the room does not hide it
+                t = depths[layer, i, j]
+                thing = owners[int(rows[numbers[layer, i, j], PLACE])]
+                if t <= floor and t - boxes[thing, SLACK] / length <= wall:
+                    seen[i, j], surfaces[i, j], whose[i, j] = t, thing, numbers[layer, i, j]

@@ -7,11 +7,26 @@ import math
 import numpy as np
 from numba import njit
 
-from sim.render_parts import BALL, CUBE, HIGH_RADIUS, HOLE, KIND, LOW_RADIUS, MATRIX, ORIGIN
-from sim.render_texture import PLAIN, SPINES, noise, pattern
+from sim.render_parts import BALL, CUBE, HIGH_RADIUS, HOLE, KIND, LOW_RADIUS, PLACE, PLANE, TUBE, Parts, Visible
+from sim.render_raster import Window
+from sim.render_rays import FLOOR, WALL, IntArray
+from sim.render_texture import PLAIN, noise, pattern
+from sim.visibility import View
 from zavis_bt.types import FloatArray
 
-INK, TEXTURE, REPEAT_U, REPEAT_V, SEED, FACES, GLOSS, DENSITY, EDGES, LIGHTS, PAINT = 3, 6, 7, 8, 9, 10, 11, 12, 13, 16, 22
+INK, TEXTURE, REPEAT_U, REPEAT_V, SEED, FACES, GLOSS, DENSITY, EDGES, LIGHTS, PAINT = (
+    3,
+    6,
+    7,
+    8,
+    9,
+    10,
+    11,
+    12,
+    13,
+    16,
+    22,
+)
 """Columns of `Parts.paints` after the colour: second colour, pattern, its repeats over a face, its seed, bits of the
 faces that have it, gloss 0 to 1, cells of the pattern per metre, widths of the dark edges along the three axes, light
 on the six faces (−x, +x, −y, +y, −z, +z in the part's space)."""
@@ -30,133 +45,178 @@ _MEAN = 0.4  # what patterns fade to
 _kernel = njit(cache=True, nogil=True, error_model="numpy")
 
 Colour = tuple[float, float, float]
+Lamp = tuple[float, float, float, float, float]
+"""Direction to the lamp, light everywhere, light of the lamp."""
 
 
 @_kernel
-def light_on(room: FloatArray, nx: float, ny: float, nz: float) -> float:
+def light_on(lamp: Lamp, nx: float, ny: float, nz: float) -> float:
     """Return the light on a surface with this unit normal: half-Lambert, dim where turned away but not black."""
-    facing = 0.5 + 0.5 * (nx * room[LAMP] + ny * room[LAMP + 1] + nz * room[LAMP + 2])
-    return float(room[AMBIENT] + room[DIFFUSE] * facing)
+    return lamp[3] + lamp[4] * (0.5 + 0.5 * (nx * lamp[0] + ny * lamp[1] + nz * lamp[2]))
 
 
 @_kernel
-def mix(paint: FloatArray, first: int, u: float, v: float, width: float) -> Colour:
+def mix(first: Colour, second: Colour, texture: int, nu: float, nv: float, seed: int, place: Colour) -> Colour:
     """Return the unlit colour at a point of a face.
 
     Args:
-        paint: Colours and pattern.
-        first: Column its first colour begins at; texture and repeats follow the second.
-        u: Along the face.
-        v: Along the face.
-        width: Cells of the pattern per pixel.
+        first: Colour.
+        second: Colour of the pattern.
+        texture: The pattern.
+        nu: Its repeats along u.
+        nv: Its repeats along v.
+        seed: Of the pattern.
+        place: Along the face u and v, and cells of the pattern per pixel.
     """
+    u, v, width = place
     share, fade = 0.0, min(max(2.0 - 2.2 * width, 0.0), 1.0)
-    texture = int(paint[first + TEXTURE])
     if fade > 0.0:
-        share = pattern(texture, u, v, paint[first + REPEAT_U], paint[first + REPEAT_V], int(paint[first + SEED]))
-    if share < 0.0:  # a book's back
-        cell = math.floor(u * paint[first + REPEAT_U])
-        book = int(noise(cell, 9, int(paint[first + SEED])) * 7.999)
-        return _BOOKS[book, 0], _BOOKS[book, 1], _BOOKS[book, 2]
-    if texture == SPINES:
-        share = fade * 1.0 + (1.0 - fade) * 0.4
-    else:
-        share = fade * share + (1.0 - fade) * _MEAN
+        share = pattern(texture, u, v, nu, nv, seed)
+        if share < 0.0:  # a book's back
+            book = int(noise(math.floor(u * nu), 9, seed) * 7.999)
+            return _BOOKS[book, 0], _BOOKS[book, 1], _BOOKS[book, 2]
+    share = fade * share + (1.0 - fade) * _MEAN
     rest = 1.0 - share
     return (
-        rest * paint[first] + share * paint[first + INK],
-        rest * paint[first + 1] + share * paint[first + INK + 1],
-        rest * paint[first + 2] + share * paint[first + INK + 2],
+        rest * first[0] + share * second[0],
+        rest * first[1] + share * second[1],
+        rest * first[2] + share * second[2],
     )
 
 
 @_kernel
-def part_colour(
-    row: FloatArray,
-    form: FloatArray,
-    inverse: FloatArray,
-    paint: FloatArray,
-    room: FloatArray,
-    x: float,
-    y: float,
-    t: float,
-    focal: float,
-    toward: Colour,
-) -> Colour:
-    """Return the colour of a part where a pixel's ray hits it.
-
-    Args:
-        row: Of `Visible.rows`.
-        form: Of `Parts.forms`.
-        inverse: Of `Parts.inverses`.
-        paint: Of `Parts.paints`.
-        room: Look of the room.
-        x: Of the ray at optical depth 1.
-        y: Of the ray at optical depth 1.
-        t: Depth of the hit.
-        focal: [px]
-        toward: Unit vector from the hit to the eye.
-    """
-    px = row[ORIGIN] + t * (row[MATRIX] * x + row[MATRIX + 1] * y + row[MATRIX + 2])
-    py = row[ORIGIN + 1] + t * (row[MATRIX + 3] * x + row[MATRIX + 4] * y + row[MATRIX + 5])
-    pz = row[ORIGIN + 2] + t * (row[MATRIX + 6] * x + row[MATRIX + 7] * y + row[MATRIX + 8])
-    kind, shade, face = int(form[KIND]), 1.0, -1
-    gx, gy, gz = 0.0, 0.0, 0.0
-    if kind == CUBE:
-        face = _cube_face(px, py, pz)
-        shade = _edge_shade(paint, face // 2, px, py, pz, focal / t)
-    elif kind == BALL:
-        gx, gy, gz = px, py, pz
-    elif abs(pz) > 1.0 - 1e-7:
-        face = 5 if pz > 0 else 4
-    else:
-        slope = (form[HIGH_RADIUS] - form[LOW_RADIUS]) / 2
-        radius = (form[LOW_RADIUS] + form[HIGH_RADIUS]) / 2 + slope * pz
-        gx, gy, gz = px, py, -slope * radius
-        if form[HOLE] > 0.0 and px * px + py * py < (radius * (1.0 + form[HOLE]) / 2) ** 2:
-            gx, gy, gz = -gx, -gy, -gz
-            shade = 0.8
-    if face >= 0:
-        light, shine = paint[LIGHTS + face], 0.0
-    else:
-        light, shine = _round_light(inverse, paint, room, gx, gy, gz, toward)
-    red, green, blue = _surface(paint, face, kind, px, py, pz, t * paint[DENSITY] / focal)
-    light, shine = light * shade, shine * room[DIFFUSE]
-    return (
-        (red * light + shine) * room[TINT],
-        (green * light + shine) * room[TINT + 1],
-        (blue * light + shine) * room[TINT + 2],
-    )
+def shade_room(
+    look: FloatArray,
+    view: View,
+    visible: Visible,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+    colours: FloatArray,
+) -> None:
+    """Fill in (h, w, 3) colours of the pixels that show walls, floor or nothing; see `sim.render_resolve.resolve`."""
+    p, r, walls = view.position, view.rotation, visible.walls
+    wall, wall_ink = _triple(look, 0, WALL_LOOK), _triple(look, 0, WALL_LOOK + INK)
+    floor, floor_ink = _triple(look, 0, FLOOR_LOOK), _triple(look, 0, FLOOR_LOOK + INK)
+    skirting, sky, tint = _triple(look, 0, SKIRTING), _triple(look, 0, SKY), _triple(look, 0, TINT)
+    lamp = (look[0, LAMP], look[0, LAMP + 1], look[0, LAMP + 2], look[0, AMBIENT], look[0, DIFFUSE])
+    wall_texture, wall_seed = int(look[0, WALL_LOOK + TEXTURE]), int(look[0, WALL_LOOK + SEED])
+    wall_u, wall_v = look[0, WALL_LOOK + REPEAT_U], look[0, WALL_LOOK + REPEAT_V]
+    floor_texture, floor_seed = int(look[0, FLOOR_LOOK + TEXTURE]), int(look[0, FLOOR_LOOK + SEED])
+    floor_u, floor_v = look[0, FLOOR_LOOK + REPEAT_U], look[0, FLOOR_LOOK + REPEAT_V]
+    wall_cells, floor_cells = max(wall_u, wall_v) / view.fx, max(floor_u, floor_v) / view.fx
+    up, low = light_on(lamp, 0.0, 0.0, 1.0), look[0, SKIRTING + 3]
+    for i in range(tile[3] - tile[1]):
+        for j in range(tile[2] - tile[0]):
+            surface, t = surfaces[i, j], seen[i, j]
+            if surface >= 0:
+                continue
+            light, colour = 1.0, sky
+            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            if surface == FLOOR:  # a pixel is stretched where the floor is seen at a slant
+                px = p[0] + t * (r[0, 0] * x + r[0, 1] * y + r[0, 2])
+                py = p[1] + t * (r[1, 0] * x + r[1, 1] * y + r[1, 2])
+                width = t * floor_cells * max(0.5 * t / p[2], 1.0)
+                colour = mix(floor, floor_ink, floor_texture, floor_u, floor_v, floor_seed, (px, py, width))
+                light = up
+            elif surface == WALL:
+                side = int(walls[whose[i, j], PLANE]) if whose[i, j] >= 0 else 5
+                axis, sign = side // 2, 2.0 * (side % 2) - 1.0
+                light = light_on(lamp, sign * (axis == 0), sign * (axis == 1), sign * (axis == 2))
+                along = 1 if axis == 0 else 0
+                q = p[along] + t * (r[along, 0] * x + r[along, 1] * y + r[along, 2])
+                pz = p[2] + t * (r[2, 0] * x + r[2, 1] * y + r[2, 2])
+                colour = skirting
+                if pz >= low:
+                    colour = mix(wall, wall_ink, wall_texture, wall_u, wall_v, wall_seed, (q, pz, t * wall_cells))
+            for k in range(3):
+                colours[i, j, k] = colour[k] * light * tint[k]
 
 
 @_kernel
-def wall_colour(room: FloatArray, side: int, along: float, z: float, width: float) -> Colour:
-    """Return the colour of a wall's face.
-
-    Args:
-        room: Look of the room.
-        side: 0 to 3 for −x, +x, −y, +y; 5 for the top.
-        along: Coordinate along the face [m].
-        z: Height [m].
-        width: Side of a pixel there [m].
-    """
-    sign = 1.0 if side % 2 else -1.0
-    light = light_on(room, sign if side < 2 else 0.0, sign if 2 <= side < 4 else 0.0, 1.0 if side > 3 else 0.0)
-    if z < room[SKIRTING + 3]:
-        red, green, blue = room[SKIRTING], room[SKIRTING + 1], room[SKIRTING + 2]
-    else:
-        cells = max(room[WALL_LOOK + REPEAT_U], room[WALL_LOOK + REPEAT_V])
-        red, green, blue = mix(room, WALL_LOOK, along, z, width * cells)
-    return red * light * room[TINT], green * light * room[TINT + 1], blue * light * room[TINT + 2]
+def shade_parts(
+    parts: Parts,
+    look: FloatArray,
+    view: View,
+    visible: Visible,
+    tile: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    seen: FloatArray,
+    surfaces: IntArray,
+    whose: IntArray,
+    colours: FloatArray,
+) -> None:
+    """Fill in (h, w, 3) colours of the pixels that show things; see `sim.render_resolve.resolve`."""
+    rows, forms, inverses, paints = visible.rows, parts.forms, parts.inverses, parts.paints
+    p, r, tint = view.position, view.rotation, _triple(look, 0, TINT)
+    lamp = (look[0, LAMP], look[0, LAMP + 1], look[0, LAMP + 2], look[0, AMBIENT], look[0, DIFFUSE])
+    for i in range(tile[3] - tile[1]):
+        for j in range(tile[2] - tile[0]):
+            if surfaces[i, j] < 0:
+                continue
+            t, row = seen[i, j], whose[i, j]
+            part, x, y = int(rows[row, PLACE]), xs[tile[0] + j], ys[tile[1] + i]
+            px = rows[row, 0] + t * (rows[row, 3] * x + rows[row, 4] * y + rows[row, 5])
+            py = rows[row, 1] + t * (rows[row, 6] * x + rows[row, 7] * y + rows[row, 8])
+            pz = rows[row, 2] + t * (rows[row, 9] * x + rows[row, 10] * y + rows[row, 11])
+            kind, face, shade, gz = int(forms[part, KIND]), -1, 1.0, pz
+            side = 1.0  # −1 within a hole, whose surface faces the axis
+            if kind == CUBE:
+                face = _cube_face(px, py, pz)
+                edges = (paints[part, EDGES], paints[part, EDGES + 1], paints[part, EDGES + 2])
+                shade = _edge_shade(edges, face // 2, px, py, pz, view.fx / t)
+            elif kind != BALL:
+                if abs(pz) > 1.0 - 1e-7:
+                    face = 5 if pz > 0.0 else 4
+                else:
+                    slope = (forms[part, HIGH_RADIUS] - forms[part, LOW_RADIUS]) / 2
+                    radius = (forms[part, LOW_RADIUS] + forms[part, HIGH_RADIUS]) / 2 + slope * pz
+                    gz, middle = -slope * radius, radius * (1.0 + forms[part, HOLE]) / 2
+                    if kind == TUBE and px * px + py * py < middle * middle:
+                        side, shade = -1.0, 0.8
+            light, shine = 0.0, 0.0
+            if face >= 0:
+                light = paints[part, LIGHTS + face]
+            else:
+                gx, gy, gz = side * px, side * py, side * gz
+                nx = inverses[part, 0] * gx + inverses[part, 3] * gy + inverses[part, 6] * gz
+                ny = inverses[part, 1] * gx + inverses[part, 4] * gy + inverses[part, 7] * gz
+                nz = inverses[part, 2] * gx + inverses[part, 5] * gy + inverses[part, 8] * gz
+                scale = 1.0 / math.sqrt(max(nx * nx + ny * ny + nz * nz, 1e-300))
+                nx, ny, nz = nx * scale, ny * scale, nz * scale
+                light, gloss = light_on(lamp, nx, ny, nz), paints[part, GLOSS]
+                if gloss > 0.0:
+                    dx = r[0, 0] * x + r[0, 1] * y + r[0, 2]
+                    dy = r[1, 0] * x + r[1, 1] * y + r[1, 2]
+                    dz = r[2, 0] * x + r[2, 1] * y + r[2, 2]
+                    shine = gloss * _shine(lamp, nx, ny, nz, dx, dy, dz)
+            red, green, blue = paints[part, 0], paints[part, 1], paints[part, 2]
+            texture, bit = int(paints[part, TEXTURE]), face if face >= 0 else 6
+            if texture != PLAIN and (int(paints[part, FACES]) >> bit) & 1:
+                ink = (paints[part, INK], paints[part, INK + 1], paints[part, INK + 2])
+                u, v = _place_on(face, px, py, pz)
+                red, green, blue = mix(
+                    (red, green, blue),
+                    ink,
+                    texture,
+                    paints[part, REPEAT_U],
+                    paints[part, REPEAT_V],
+                    int(paints[part, SEED]),
+                    (u, v, t * paints[part, DENSITY] / view.fx),
+                )
+            light *= shade
+            colours[i, j, 0] = (red * light + shine) * tint[0]
+            colours[i, j, 1] = (green * light + shine) * tint[1]
+            colours[i, j, 2] = (blue * light + shine) * tint[2]
 
 
 @_kernel
-def floor_colour(room: FloatArray, x: float, y: float, width: float) -> Colour:
-    """Return the colour of the floor at a point of the map; ``width`` is the side of a pixel there [m]."""
-    light = light_on(room, 0.0, 0.0, 1.0)
-    cells = max(room[FLOOR_LOOK + REPEAT_U], room[FLOOR_LOOK + REPEAT_V])
-    red, green, blue = mix(room, FLOOR_LOOK, x, y, width * cells)
-    return red * light * room[TINT], green * light * room[TINT + 1], blue * light * room[TINT + 2]
+def _triple(table: FloatArray, row: int, first: int) -> Colour:
+    return table[row, first], table[row, first + 1], table[row, first + 2]
 
 
 @_kernel
@@ -171,49 +231,33 @@ def _cube_face(x: float, y: float, z: float) -> int:
 
 
 @_kernel
-def _edge_shade(paint: FloatArray, axis: int, x: float, y: float, z: float, pixels: float) -> float:
+def _edge_shade(edges: Colour, axis: int, x: float, y: float, z: float, pixels: float) -> float:
     """Return how bright a point of a cube's face is: dark near the edges, so that boxes show their shape."""
-    near = 0.0
-    if axis != 0 and 1.0 - abs(x) < paint[EDGES]:
-        near = 1.0
-    if axis != 1 and 1.0 - abs(y) < paint[EDGES + 1]:
-        near = 1.0
-    if axis != 2 and 1.0 - abs(z) < paint[EDGES + 2]:
-        near = 1.0
+    near = axis != 0 and 1.0 - abs(x) < edges[0]
+    near |= axis != 1 and 1.0 - abs(y) < edges[1]
+    near |= axis != 2 and 1.0 - abs(z) < edges[2]
     return 1.0 - near * (1.0 - _EDGE_SHADE) * min(0.01 * pixels, 1.0)  # an edge narrower than a pixel is fainter
 
 
 @_kernel
-def _round_light(
-    inverse: FloatArray, paint: FloatArray, room: FloatArray, gx: float, gy: float, gz: float, toward: Colour
-) -> tuple[float, float]:
-    """Return light and shine of a round surface whose gradient in the part's space is given."""
-    nx = inverse[0] * gx + inverse[3] * gy + inverse[6] * gz
-    ny = inverse[1] * gx + inverse[4] * gy + inverse[7] * gz
-    nz = inverse[2] * gx + inverse[5] * gy + inverse[8] * gz
-    scale = 1.0 / math.sqrt(max(nx * nx + ny * ny + nz * nz, 1e-300))
-    nx, ny, nz = nx * scale, ny * scale, nz * scale
-    light = light_on(room, nx, ny, nz)
-    if paint[GLOSS] <= 0.0:
-        return light, 0.0
-    hx, hy, hz = room[LAMP] + toward[0], room[LAMP + 1] + toward[1], room[LAMP + 2] + toward[2]
+def _shine(lamp: Lamp, nx: float, ny: float, nz: float, dx: float, dy: float, dz: float) -> float:
+    """Return what a glossy surface reflects of the lamp, for a ray of direction d (Blinn and Phong)."""
+    scale = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
+    hx, hy, hz = lamp[0] - dx * scale, lamp[1] - dy * scale, lamp[2] - dz * scale
     peak = (nx * hx + ny * hy + nz * hz) / math.sqrt(max(hx * hx + hy * hy + hz * hz, 1e-300))
-    peak = max(peak, 0.0) ** 4
-    return light, 220.0 * paint[GLOSS] * peak**6
+    peak = max(peak, 0.0) ** 2
+    peak *= peak
+    peak *= peak
+    return 220.0 * lamp[4] * peak * peak * peak
 
 
 @_kernel
-def _surface(paint: FloatArray, face: int, kind: int, x: float, y: float, z: float, width: float) -> Colour:
-    """Return the unlit colour at a point of a part's space on its surface."""
-    if int(paint[TEXTURE]) == PLAIN or (face >= 0 and not (int(paint[FACES]) >> face) & 1):
-        return paint[0], paint[1], paint[2]
-    if face < 0 and not (int(paint[FACES]) >> 6) & 1:
-        return paint[0], paint[1], paint[2]
-    u, v = (x + 1.0) / 2, (y + 1.0) / 2
+def _place_on(face: int, x: float, y: float, z: float) -> tuple[float, float]:
+    """Return where on a face a point of the part's space is, u and v from 0 to 1."""
     if face < 0:
-        u, v = math.atan2(y, x) / (2 * math.pi) + 0.5, (z + 1.0) / 2
-    elif face < 2:
-        u, v = v, (z + 1.0) / 2
-    elif face < 4:
-        v = (z + 1.0) / 2
-    return mix(paint, 0, u, v, width)
+        return math.atan2(y, x) / (2 * math.pi) + 0.5, (z + 1.0) / 2
+    if face < 2:
+        return (y + 1.0) / 2, (z + 1.0) / 2
+    if face < 4:
+        return (x + 1.0) / 2, (z + 1.0) / 2
+    return (x + 1.0) / 2, (y + 1.0) / 2

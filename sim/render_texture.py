@@ -88,9 +88,7 @@ def _plain_pattern(texture: int, x: float, y: float, a: float, b: float, cell: i
 
 
 @_kernel
-def _made_pattern(
-    texture: int, u: float, v: float, a: float, b: float, i: int, j: int, nv: float, seed: int
-) -> float:
+def _made_pattern(texture: int, u: float, v: float, a: float, b: float, i: int, j: int, nv: float, seed: int) -> float:
     """What is written, shown or cut into a face."""
     if texture == SCREEN:
         if u < 0.04 or u > 0.96 or v < 0.05 or v > 0.95:
@@ -145,9 +143,7 @@ def _clock(x: float, y: float, seed: int) -> float:
 
 
 @_kernel
-def _other_pattern(
-    texture: int, u: float, v: float, x: float, a: float, b: float, i: int, j: int, seed: int
-) -> float:
+def _other_pattern(texture: int, u: float, v: float, x: float, a: float, b: float, i: int, j: int, seed: int) -> float:
     if texture == SPINES:
         start = 0.12 * noise(i, 3, seed)
         return -1.0 if v < 0.68 + 0.3 * noise(i, 2, seed) and start * 0.4 < a < 0.94 else 0.0

@@ -205,10 +205,10 @@ def _light(paints: FloatArray, inverses: FloatArray, frames: FloatArray, room: F
     """Write the light on the flat faces of the parts, and the widths of their edges."""
     normals = inverses[:, :9].reshape(-1, 3, 3)
     lengths = np.linalg.norm(normals, axis=2)
-    facing = 0.5 * (normals @ room[LAMP : LAMP + 3]) / np.maximum(lengths, 1e-300)
+    facing = 0.5 * (normals @ room[0, LAMP : LAMP + 3]) / np.maximum(lengths, 1e-300)
     for axis in range(3):
         for side, sign in enumerate((-1, 1)):
-            paints[:, LIGHTS + 2 * axis + side] = room[AMBIENT] + room[DIFFUSE] * (0.5 + sign * facing[:, axis])
+            paints[:, LIGHTS + 2 * axis + side] = room[0, AMBIENT] + room[0, DIFFUSE] * (0.5 + sign * facing[:, axis])
     halves = np.linalg.norm(frames[:, 3:].reshape(-1, 3, 3), axis=2)
     paints[:, EDGES : EDGES + 3] = np.minimum(_EDGE / np.maximum(halves, 1e-9), _EDGE_SHARE)
 

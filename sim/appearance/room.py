@@ -68,15 +68,15 @@ class RoomLook:
         )
 
     def columns(self) -> FloatArray:
-        """Return it as the renderer has it; see `sim.render_shade`."""
-        columns = np.zeros(ROOM)
-        columns[LAMP : LAMP + 3] = np.array(self.lamp) / np.linalg.norm(self.lamp)
-        columns[AMBIENT], columns[DIFFUSE] = self.ambient, self.diffuse
-        columns[TINT : TINT + 3] = self.tint
-        columns[WALL_LOOK : WALL_LOOK + 10] = self.wall.columns()
-        columns[FLOOR_LOOK : FLOOR_LOOK + 10] = self.floor.columns()
-        columns[SKIRTING : SKIRTING + 4] = [*self.skirting, self.skirting_height]
-        columns[SKY : SKY + 3] = 226, 232, 238
+        """Return it as the renderer has it: (1, ROOM), see `sim.render_shade`."""
+        columns = np.zeros((1, ROOM))
+        columns[0, LAMP : LAMP + 3] = np.array(self.lamp) / np.linalg.norm(self.lamp)
+        columns[0, AMBIENT], columns[0, DIFFUSE] = self.ambient, self.diffuse
+        columns[0, TINT : TINT + 3] = self.tint
+        columns[0, WALL_LOOK : WALL_LOOK + 10] = self.wall.columns()
+        columns[0, FLOOR_LOOK : FLOOR_LOOK + 10] = self.floor.columns()
+        columns[0, SKIRTING : SKIRTING + 4] = [*self.skirting, self.skirting_height]
+        columns[0, SKY : SKY + 3] = 226, 232, 238
         columns.setflags(write=False)
         return columns
 
