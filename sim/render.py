@@ -14,10 +14,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.render_parts import PLACE, Parts, Visible
-from sim.render_raster import Window, draw_part, draw_wall, rays_of
+from sim.render_parts import PLACE, RECT, Parts, Visible
+from sim.render_raster import Window, draw_part, draw_wall, points_on_part, points_on_wall
 from sim.render_rays import CARRIES, IntArray, Solids
-from sim.render_resolve import resolve
+from sim.render_resolve import COMMON_LAYER, WALL_LAYER, resolve
 from sim.render_shade import shade_parts, shade_room
 from sim.scene import Scene
 from sim.visibility import View
@@ -80,32 +80,53 @@ def _draw(
     view: View,
     visible: Visible,
     window: Window,
+    pixels: NDArray[np.int64],
     xs: FloatArray,
     ys: FloatArray,
     depths: FloatArray,
     numbers: IntArray,
 ) -> int:
-    """Draw all that meets a window; returns how many layers hold something.
+    """Draw all that meets a window, or only some pixels of it if there are any given.
 
-    Layer 0 are the walls, layer 1 is what carries nothing each further layer is one carrier.
+    Returns how many layers hold something. Layer 0 are the walls, layer 1 is what carries nothing, each further layer is
+    one carrier.
     """
-    width, height, layers = window[2] - window[0], window[3] - window[1], 2
-    depths[:2, :height, :width] = math.inf
-    for k in range(len(visible.walls)):
-        draw_wall(visible.walls[k], solids.room[3], k, view, window, xs, ys, depths[0], numbers[0])
-    for k in range(len(visible.things)):
-        thing = visible.things[k]
-        if thing[3] >= window[2] or thing[4] >= window[3] or thing[5] <= window[0] or thing[6] <= window[1]:
+    left, top, right, bottom = window
+    rows, walls, things, forms, single = visible.rows, visible.walls, visible.things, parts.forms, len(pixels) > 0
+    height, width = xs.shape
+    _clear(depths, WALL_LAYER, height, width)
+    _clear(depths, COMMON_LAYER, height, width)
+    for k in range(len(walls)):
+        if walls[k, 0] < right and walls[k, 1] < bottom and walls[k, 2] > left and walls[k, 3] > top:
+            if single:
+                points_on_wall(walls, k, solids.room[3], view, pixels, xs, ys, depths, numbers, WALL_LAYER)
+            else:
+                draw_wall(walls[k], solids.room[3], k, view, window, xs, ys, depths[WALL_LAYER], numbers[WALL_LAYER])
+    layers = COMMON_LAYER + 1
+    for k in range(len(things)):
+        if things[k, 3] >= right or things[k, 4] >= bottom or things[k, 5] <= left or things[k, 6] <= top:
             continue
-        layer = 1
-        if solids.boxes[thing[0], CARRIES] > 0.0 and layers < len(depths):
+        layer = COMMON_LAYER
+        if solids.boxes[things[k, 0], CARRIES] > 0.0:
             layer = layers
-            depths[layer, :height, :width] = math.inf
+            _clear(depths, layer, height, width)
             layers += 1
-        for row in range(thing[1], thing[2]):
-            form = parts.forms[int(visible.rows[row, PLACE])]
-            draw_part(visible.rows[row], form, row, window, xs, ys, depths[layer], numbers[layer])
+        for row in range(things[k, 1], things[k, 2]):
+            across = rows[row, RECT] < right and rows[row, RECT + 2] > left
+            if across and rows[row, RECT + 1] < bottom and rows[row, RECT + 3] > top:
+                part = int(rows[row, PLACE])
+                if single:
+                    points_on_part(rows, row, forms, part, pixels, xs, ys, depths, numbers, layer)
+                else:
+                    draw_part(rows[row], forms[part], row, window, xs, ys, depths[layer], numbers[layer])
     return layers
+
+
+@_kernel
+def _clear(depths: FloatArray, layer: int, height: int, width: int) -> None:
+    for i in range(height):
+        for j in range(width):
+            depths[layer, i, j] = math.inf
 
 
 @_kernel
@@ -126,16 +147,20 @@ def _measure(
     depth_range: tuple[float, float],
     out: NDArray[np.float32],
 ) -> None:
-    xs, ys = rays_of(view)
+    n = len(pixels)
+    if n == 0:
+        return
+    xs, ys, seen = np.empty((n, 1)), np.empty((n, 1)), np.empty((n, 1))
+    surfaces, whose = np.empty((n, 1), np.int32), np.empty((n, 1), np.int32)
+    window = (pixels[:, 0].min(), pixels[:, 1].min(), pixels[:, 0].max() + 1, pixels[:, 1].max() + 1)
+    for k in range(n):
+        xs[k, 0], ys[k, 0] = (pixels[k, 0] + 0.5 - view.cx) / view.fx, (pixels[k, 1] + 0.5 - view.cy) / view.fy
     count = _carriers(solids, visible) + 2
-    depths, numbers = np.empty((count, 1, 1)), np.zeros((count, 1, 1), np.int32)
-    seen, surfaces, whose = np.empty((1, 1)), np.empty((1, 1), np.int32), np.empty((1, 1), np.int32)
-    for k in range(len(pixels)):
-        col, row = int(pixels[k, 0]), int(pixels[k, 1])
-        tile = (col, row, col + 1, row + 1)
-        layers = _draw(solids, parts, view, visible, tile, xs, ys, depths, numbers)
-        resolve(solids, parts, view, visible, tile, xs, ys, depths, numbers, layers, seen, surfaces, whose)
-        out[k] = _reading(seen[0, 0], depth_range)
+    depths, numbers = np.empty((count, n, 1)), np.zeros((count, n, 1), np.int32)
+    layers = _draw(solids, parts, view, visible, window, pixels, xs, ys, depths, numbers)
+    resolve(solids, parts, view, visible, (n, 1), xs, ys, depths, numbers, layers, seen, surfaces, whose)
+    for k in range(n):
+        out[k] = _reading(seen[k, 0], depth_range)
 
 
 @_kernel
@@ -151,22 +176,25 @@ def _render(
     depth: NDArray[np.float32],
     surfaces: IntArray,
 ) -> None:
-    xs, ys = rays_of(view)
-    count = _carriers(solids, visible) + 2
-    depths = np.empty((count, _TILE_HEIGHT, _TILE_WIDTH))
-    numbers = np.zeros((count, _TILE_HEIGHT, _TILE_WIDTH), np.int32)
-    seen, colours = np.empty((_TILE_HEIGHT, _TILE_WIDTH)), np.empty((_TILE_HEIGHT, _TILE_WIDTH, 3))
-    what, whose = np.empty((_TILE_HEIGHT, _TILE_WIDTH), np.int32), np.empty((_TILE_HEIGHT, _TILE_WIDTH), np.int32)
+    count, shape = _carriers(solids, visible) + 2, (_TILE_HEIGHT, _TILE_WIDTH)
+    depths, numbers = np.empty((count, *shape)), np.zeros((count, *shape), np.int32)
+    seen, colours, no_pixels = np.empty(shape), np.empty((*shape, 3)), np.empty((0, 2), np.int64)
+    what, whose, xs, ys = np.empty(shape, np.int32), np.empty(shape, np.int32), np.empty(shape), np.empty(shape)
     for top in range(window[1], window[3], _TILE_HEIGHT):
         for left in range(window[0], window[2], _TILE_WIDTH):
             tile = (left, top, min(left + _TILE_WIDTH, window[2]), min(top + _TILE_HEIGHT, window[3]))
-            layers = _draw(solids, parts, view, visible, tile, xs, ys, depths, numbers)
-            resolve(solids, parts, view, visible, tile, xs, ys, depths, numbers, layers, seen, what, whose)
-            shade_room(look, view, visible, tile, xs, ys, seen, what, whose, colours)
-            shade_parts(parts, look, view, visible, tile, xs, ys, seen, what, whose, colours)
-            for i in range(tile[3] - top):
+            size = (tile[3] - top, tile[2] - left)
+            for i in range(size[0]):
+                y = (top + i + 0.5 - view.cy) / view.fy
+                for j in range(size[1]):
+                    xs[i, j], ys[i, j] = (left + j + 0.5 - view.cx) / view.fx, y
+            layers = _draw(solids, parts, view, visible, tile, no_pixels, xs, ys, depths, numbers)
+            resolve(solids, parts, view, visible, size, xs, ys, depths, numbers, layers, seen, what, whose)
+            shade_room(look, view, visible, size, xs, ys, seen, what, whose, colours)
+            shade_parts(parts, look, view, visible, size, xs, ys, seen, what, whose, colours)
+            for i in range(size[0]):
                 v = top + i - window[1]
-                for j in range(tile[2] - left):
+                for j in range(size[1]):
                     u = left + j - window[0]
                     depth[v, u], surfaces[v, u] = _reading(seen[i, j], depth_range), what[i, j]
                     for k in range(3):

@@ -1,8 +1,7 @@
-"""Where the rays of a window's pixels enter parts and walls: loops without branches, which the compiler vectorises.
+"""Where rays enter parts and walls: one ray at a time, and in loops over a window's pixels that the compiler vectorises.
 
-All functions keep the nearest depth of each pixel in ``depths`` and whose it is in ``numbers``, both (rows, cols) of the
-window that begins at ``left`` and ``top``. ``xs`` and ``ys`` are the rays' x and y at optical depth 1 for each column and
-row of the image.
+The loops keep the nearest depth of each pixel in ``depths`` and whose it is in ``numbers``, both (rows, cols) of the
+window. ``xs`` and ``ys`` are the rays' x and y at optical depth 1, of the same shape. Depths are infinite where a ray misses, and a ray that starts within a part does not hit it.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.render_parts import BALL, CUBE, HIGH_RADIUS, HOLE, KIND, LOW_RADIUS, MATRIX, ORIGIN, PLANE, RECT
 from sim.render_rays import IntArray
@@ -26,14 +26,69 @@ Window = tuple[int, int, int, int]
 
 
 @_kernel
-def clip(rect: FloatArray, window: Window) -> Window:
-    """Return the pixels of a rectangle that are in a window; empty if its end is not after its begin."""
-    return (
-        max(int(rect[0]), window[0]),
-        max(int(rect[1]), window[1]),
-        min(int(rect[2]), window[2]),
-        min(int(rect[3]), window[3]),
-    )
+def cube_entry(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float) -> float:
+    """Return where a ray from o along d enters the cube from -1 to 1."""
+    ix = 1.0 / (dx if abs(dx) > _TINY else _TINY)
+    iy = 1.0 / (dy if abs(dy) > _TINY else _TINY)
+    iz = 1.0 / (dz if abs(dz) > _TINY else _TINY)
+    mx, my, mz = -ox * ix, -oy * iy, -oz * iz  # where it passes the middle planes
+    hx, hy, hz = abs(ix), abs(iy), abs(iz)
+    entry = max(max(mx - hx, my - hy), mz - hz)
+    leave = min(min(mx + hx, my + hy), mz + hz)
+    return entry if (entry <= leave) & (entry > 0.0) else math.inf
+
+
+@_kernel
+def ball_entry(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float) -> float:
+    """Return where a ray enters the ball of radius 1."""
+    a, b = dx * dx + dy * dy + dz * dz, ox * dx + oy * dy + oz * dz
+    inside = b * b - a * (ox * ox + oy * oy + oz * oz - 1.0)
+    entry = (-b - math.sqrt(max(inside, 0.0))) / a
+    return entry if (inside >= 0.0) & (entry > 0.0) else math.inf
+
+
+@_kernel
+def cylinder_entry(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float) -> float:
+    """Return where a ray enters the cylinder of radius 1 about the third axis, from -1 to 1."""
+    iz = 1.0 / (dz if abs(dz) > _TINY else _TINY)
+    mz, hz = -oz * iz, abs(iz)
+    a, b = max(dx * dx + dy * dy, _TINY * _TINY), ox * dx + oy * dy
+    inside = b * b - a * (ox * ox + oy * oy - 1.0)
+    reach = math.sqrt(max(inside, 0.0))
+    entry = max((-b - reach) / a, mz - hz)
+    leave = min((-b + reach) / a, mz + hz)
+    return entry if (inside >= 0.0) & (entry <= leave) & (entry > 0.0) else math.inf
+
+
+@_kernel
+def round_entry(
+    ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, low: float, high: float, hole: float
+) -> float:
+    """Return where a ray enters a body of changing radius, perhaps with a hole: its sides or its ends."""
+    dz = dz if abs(dz) > _TINY else _TINY
+    middle, slope = (low + high) / 2, (high - low) / 2
+    entry = min(_end_entry(ox, oy, oz, dx, dy, dz, low, high, hole), _side_entry(ox, oy, oz, dx, dy, dz, middle, slope))
+    if hole > 0.0:
+        entry = min(entry, _side_entry(ox, oy, oz, dx, dy, dz, middle * hole, slope * hole))
+    return entry
+
+
+@_kernel
+def wall_entry(ahead: float, along: float, up: float, away: float, low: float, high: float, top: float) -> float:
+    """Return where a ray meets a wall's face.
+
+    Args:
+        ahead: Its direction across the face's plane.
+        along: Its direction along the face.
+        up: Its direction upwards.
+        away: Distance of the plane.
+        low: Where the face begins, along.
+        high: Where it ends.
+        top: Where its top is.
+    """
+    t = away / (ahead if abs(ahead) > _TINY else _TINY)
+    place = t * along
+    return t if (t > 0.0) & (place >= low) & (place <= high) & (t * up <= top) else math.inf
 
 
 @_kernel
@@ -47,22 +102,134 @@ def draw_part(
     depths: FloatArray,
     numbers: IntArray,
 ) -> None:
-    """Draw a part; a ray that starts within it does not hit it."""
-    box = clip(row[RECT : RECT + 4], window)
-    if box[0] >= box[2] or box[1] >= box[3]:
-        return
-    kind = int(form[KIND])
-    for v in range(box[1], box[3]):
-        line, owners = depths[v - window[1], box[0] - window[0] :], numbers[v - window[1], box[0] - window[0] :]
-        x = xs[box[0] : box[2]]
+    """Draw a part."""
+    first_col, first_row, end_col, end_row = _clip(row[RECT : RECT + 4], window)
+    kind, first, end = int(form[KIND]), first_col - window[0], end_col - window[0]
+    for i in range(first_row - window[1], end_row - window[1]):
+        x, y, line, owners = xs[i, first:end], ys[i, 0], depths[i, first:end], numbers[i, first:end]
         if kind == CUBE:
-            _cube_line(row, ys[v], x, line, owners, number)
+            _cube_line(row, y, x, line, owners, number)
         elif kind == BALL:
-            _ball_line(row, ys[v], x, line, owners, number)
+            _ball_line(row, y, x, line, owners, number)
         elif form[LOW_RADIUS] == form[HIGH_RADIUS] and form[HOLE] == 0.0:
-            _cylinder_line(row, ys[v], x, line, owners, number)
+            _cylinder_line(row, y, x, line, owners, number)
         else:
-            _round_line(row, form, ys[v], x, line, owners, number)
+            _round_line(row, form, y, x, line, owners, number)
+
+
+@_kernel
+def draw_wall(
+    wall: FloatArray,
+    height: float,
+    number: int,
+    view: View,
+    window: Window,
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    numbers: IntArray,
+) -> None:
+    """Draw a face of a wall."""
+    first_col, first_row, end_col, end_row = _clip(wall[:4], window)
+    r, (away, low, high, top) = view.rotation, face_from(wall, height, view)
+    axis, first, end = int(wall[PLANE]) // 2, first_col - window[0], end_col - window[0]
+    a0, b0, c0 = r[axis, 0], r[1 - axis, 0], r[2, 0]
+    for i in range(first_row - window[1], end_row - window[1]):
+        x, y, line, owners = xs[i, first:end], ys[i, 0], depths[i, first:end], numbers[i, first:end]
+        a = r[axis, 1] * y + r[axis, 2]
+        b = r[1 - axis, 1] * y + r[1 - axis, 2]
+        c = r[2, 1] * y + r[2, 2]
+        for k in range(len(x)):
+            entry = wall_entry(a0 * x[k] + a, b0 * x[k] + b, c0 * x[k] + c, away, low, high, top)
+            hit = entry < line[k]
+            line[k] = entry if hit else line[k]
+            owners[k] = number if hit else owners[k]
+
+
+@_kernel
+def face_from(wall: FloatArray, height: float, view: View) -> tuple[float, float, float, float]:
+    """Return a wall's face as seen from the eye: distance of its plane, begin, end and top [m]."""
+    p, axis = view.position, int(wall[PLANE]) // 2
+    across = p[1 - axis]
+    return (
+        wall[PLANE + 1] - p[axis],
+        wall[PLANE + 2] - _JOINT - across,
+        wall[PLANE + 3] + _JOINT - across,
+        height - p[2],
+    )
+
+
+@_kernel
+def points_on_part(
+    rows: FloatArray,
+    row: int,
+    forms: FloatArray,
+    part: int,
+    pixels: NDArray[np.int64],
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    numbers: IntArray,
+    layer: int,
+) -> None:
+    """Do what `draw_part` does, for single pixels (n, 2) whose rays, depths and numbers are (n, 1)."""
+    ox, oy, oz = rows[row, ORIGIN], rows[row, ORIGIN + 1], rows[row, ORIGIN + 2]
+    kind, low, high, hole = int(forms[part, KIND]), forms[part, LOW_RADIUS], forms[part, HIGH_RADIUS], forms[part, HOLE]
+    for k in range(len(pixels)):
+        u, v, x, y = pixels[k, 0], pixels[k, 1], xs[k, 0], ys[k, 0]
+        if not (rows[row, RECT] <= u < rows[row, RECT + 2] and rows[row, RECT + 1] <= v < rows[row, RECT + 3]):
+            continue
+        dx = rows[row, MATRIX] * x + (rows[row, MATRIX + 1] * y + rows[row, MATRIX + 2])
+        dy = rows[row, MATRIX + 3] * x + (rows[row, MATRIX + 4] * y + rows[row, MATRIX + 5])
+        dz = rows[row, MATRIX + 6] * x + (rows[row, MATRIX + 7] * y + rows[row, MATRIX + 8])
+        if kind == CUBE:
+            t = cube_entry(ox, oy, oz, dx, dy, dz)
+        elif kind == BALL:
+            t = ball_entry(ox, oy, oz, dx, dy, dz)
+        elif low == high and hole == 0.0:
+            t = cylinder_entry(ox, oy, oz, dx, dy, dz)
+        else:
+            t = round_entry(ox, oy, oz, dx, dy, dz, low, high, hole)
+        if t < depths[layer, k, 0]:
+            depths[layer, k, 0], numbers[layer, k, 0] = t, row
+
+
+@_kernel
+def points_on_wall(
+    walls: FloatArray,
+    number: int,
+    height: float,
+    view: View,
+    pixels: NDArray[np.int64],
+    xs: FloatArray,
+    ys: FloatArray,
+    depths: FloatArray,
+    numbers: IntArray,
+    layer: int,
+) -> None:
+    """Do what `draw_wall` does, for single pixels as in `points_on_part`."""
+    r, (away, low, high, top) = view.rotation, face_from(walls[number], height, view)
+    axis = int(walls[number, PLANE]) // 2
+    for k in range(len(pixels)):
+        u, v, x, y = pixels[k, 0], pixels[k, 1], xs[k, 0], ys[k, 0]
+        if not (walls[number, 0] <= u < walls[number, 2] and walls[number, 1] <= v < walls[number, 3]):
+            continue
+        ahead = r[axis, 0] * x + (r[axis, 1] * y + r[axis, 2])
+        along = r[1 - axis, 0] * x + (r[1 - axis, 1] * y + r[1 - axis, 2])
+        t = wall_entry(ahead, along, r[2, 0] * x + (r[2, 1] * y + r[2, 2]), away, low, high, top)
+        if t < depths[layer, k, 0]:
+            depths[layer, k, 0], numbers[layer, k, 0] = t, number
+
+
+@_kernel
+def _clip(rect: FloatArray, window: Window) -> Window:
+    """Return the pixels of a rectangle that are in a window; empty if its end is not after its begin."""
+    return (
+        max(int(rect[0]), window[0]),
+        max(int(rect[1]), window[1]),
+        min(int(rect[2]), window[2]),
+        min(int(rect[3]), window[3]),
+    )
 
 
 @_kernel
@@ -72,15 +239,8 @@ def _cube_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, owne
     ay, by = row[MATRIX + 3], row[MATRIX + 4] * y + row[MATRIX + 5]
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
     for k in range(len(xs)):
-        dx, dy, dz = ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz
-        ix = 1.0 / (dx if abs(dx) > _TINY else _TINY)
-        iy = 1.0 / (dy if abs(dy) > _TINY else _TINY)
-        iz = 1.0 / (dz if abs(dz) > _TINY else _TINY)
-        mx, my, mz = -ox * ix, -oy * iy, -oz * iz  # where the ray passes the middle planes
-        hx, hy, hz = abs(ix), abs(iy), abs(iz)
-        entry = max(max(mx - hx, my - hy), mz - hz)
-        leave = min(min(mx + hx, my + hy), mz + hz)
-        hit = (entry <= leave) & (entry > 0.0) & (entry < line[k])
+        entry = cube_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz)
+        hit = entry < line[k]
         line[k] = entry if hit else line[k]
         owners[k] = number if hit else owners[k]
 
@@ -91,13 +251,9 @@ def _ball_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, owne
     ax, bx = row[MATRIX], row[MATRIX + 1] * y + row[MATRIX + 2]
     ay, by = row[MATRIX + 3], row[MATRIX + 4] * y + row[MATRIX + 5]
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
-    outside = ox * ox + oy * oy + oz * oz - 1.0
     for k in range(len(xs)):
-        dx, dy, dz = ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz
-        a, b = dx * dx + dy * dy + dz * dz, ox * dx + oy * dy + oz * dz
-        inside = b * b - a * outside
-        entry = (-b - math.sqrt(max(inside, 0.0))) / a
-        hit = (inside >= 0.0) & (entry > 0.0) & (entry < line[k])
+        entry = ball_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz)
+        hit = entry < line[k]
         line[k] = entry if hit else line[k]
         owners[k] = number if hit else owners[k]
 
@@ -108,17 +264,9 @@ def _cylinder_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, 
     ax, bx = row[MATRIX], row[MATRIX + 1] * y + row[MATRIX + 2]
     ay, by = row[MATRIX + 3], row[MATRIX + 4] * y + row[MATRIX + 5]
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
-    outside = ox * ox + oy * oy - 1.0
     for k in range(len(xs)):
-        dx, dy, dz = ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz
-        iz = 1.0 / (dz if abs(dz) > _TINY else _TINY)
-        mz, hz = -oz * iz, abs(iz)
-        a, b = max(dx * dx + dy * dy, _TINY * _TINY), ox * dx + oy * dy
-        inside = b * b - a * outside
-        reach = math.sqrt(max(inside, 0.0))
-        entry = max((-b - reach) / a, mz - hz)
-        leave = min((-b + reach) / a, mz + hz)
-        hit = (inside >= 0.0) & (entry <= leave) & (entry > 0.0) & (entry < line[k])
+        entry = cylinder_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz)
+        hit = entry < line[k]
         line[k] = entry if hit else line[k]
         owners[k] = number if hit else owners[k]
 
@@ -127,20 +275,13 @@ def _cylinder_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, 
 def _round_line(
     row: FloatArray, form: FloatArray, y: float, xs: FloatArray, line: FloatArray, owners: IntArray, number: int
 ) -> None:
-    """Draw a body of changing radius, or with a hole: the nearest of its outer side, inner side and ends."""
     ox, oy, oz = row[ORIGIN], row[ORIGIN + 1], row[ORIGIN + 2]
     ax, bx = row[MATRIX], row[MATRIX + 1] * y + row[MATRIX + 2]
     ay, by = row[MATRIX + 3], row[MATRIX + 4] * y + row[MATRIX + 5]
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
-    middle, slope = (form[LOW_RADIUS] + form[HIGH_RADIUS]) / 2, (form[HIGH_RADIUS] - form[LOW_RADIUS]) / 2
-    hole = form[HOLE]
+    low, high, hole = form[LOW_RADIUS], form[HIGH_RADIUS], form[HOLE]
     for k in range(len(xs)):
-        dx, dy, dz = ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz
-        dz = dz if abs(dz) > _TINY else _TINY
-        entry = _end_entry(ox, oy, oz, dx, dy, dz, form[LOW_RADIUS], form[HIGH_RADIUS], hole)
-        entry = min(entry, _side_entry(ox, oy, oz, dx, dy, dz, middle, slope))
-        if hole > 0.0:
-            entry = min(entry, _side_entry(ox, oy, oz, dx, dy, dz, middle * hole, slope * hole))
+        entry = round_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz, low, high, hole)
         if entry < line[k]:
             line[k], owners[k] = entry, number
 
@@ -161,14 +302,11 @@ def _end_entry(
 
 
 @_kernel
-def _side_entry(
-    ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, middle: float, slope: float
-) -> float:
+def _side_entry(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, middle: float, slope: float) -> float:
     """Return where a ray first meets the side of radius ``middle + slope z`` for z from -1 to 1, inf if it does not."""
     radius, change = middle + slope * oz, slope * dz
     a, b = dx * dx + dy * dy - change * change, ox * dx + oy * dy - radius * change
-    c = ox * ox + oy * oy - radius * radius
-    inside = b * b - a * c
+    inside = b * b - a * (ox * ox + oy * oy - radius * radius)
     if inside < 0.0:
         return math.inf
     a = a if abs(a) > _TINY * _TINY else _TINY * _TINY
@@ -177,49 +315,3 @@ def _side_entry(
         if t > 0.0 and abs(oz + t * dz) <= 1.0:
             entry = min(entry, t)
     return entry
-
-
-@_kernel
-def draw_wall(
-    wall: FloatArray,
-    height: float,
-    number: int,
-    view: View,
-    window: Window,
-    xs: FloatArray,
-    ys: FloatArray,
-    depths: FloatArray,
-    numbers: IntArray,
-) -> None:
-    """Draw a face of a wall."""
-    box = clip(wall[:4], window)
-    if box[0] >= box[2] or box[1] >= box[3]:
-        return
-    r, p = view.rotation, view.position
-    axis = int(wall[PLANE]) // 2
-    away, across = wall[PLANE + 1] - p[axis], p[1 - axis]
-    low, high, top = wall[PLANE + 2] - _JOINT - across, wall[PLANE + 3] + _JOINT - across, height - p[2]
-    a0, a1, a2 = r[axis, 0], r[axis, 1], r[axis, 2]
-    b0, b1, b2 = r[1 - axis, 0], r[1 - axis, 1], r[1 - axis, 2]
-    for v in range(box[1], box[3]):
-        line, owners = depths[v - window[1], box[0] - window[0] :], numbers[v - window[1], box[0] - window[0] :]
-        y, x = ys[v], xs[box[0] : box[2]]
-        a, b, c = a1 * y + a2, b1 * y + b2, r[2, 1] * y + r[2, 2]
-        for k in range(len(x)):
-            ahead = a0 * x[k] + a
-            t = away / (ahead if abs(ahead) > _TINY else _TINY)
-            along, up = t * (b0 * x[k] + b), t * (r[2, 0] * x[k] + c)
-            hit = (t > 0.0) & (along >= low) & (along <= high) & (up <= top) & (t < line[k])
-            line[k] = t if hit else line[k]
-            owners[k] = number if hit else owners[k]
-
-
-@_kernel
-def rays_of(view: View) -> tuple[FloatArray, FloatArray]:
-    """Return (width,) x and (height,) y of the rays through the pixels' centres at optical depth 1."""
-    xs, ys = np.empty(view.width), np.empty(view.height)
-    for col in range(view.width):
-        xs[col] = (col + 0.5 - view.cx) / view.fx
-    for row in range(view.height):
-        ys[row] = (row + 0.5 - view.cy) / view.fy
-    return xs, ys

@@ -11,7 +11,6 @@ import math
 from numba import njit
 
 from sim.render_parts import PLACE, Parts, Visible
-from sim.render_raster import Window
 from sim.render_rays import CZ, FLOOR, HZ, NOTHING, SLACK, WALL, IntArray, Solids
 from sim.visibility import View
 from zavis_bt.types import FloatArray
@@ -32,7 +31,7 @@ def resolve(
     parts: Parts,
     view: View,
     visible: Visible,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     depths: FloatArray,
@@ -49,9 +48,9 @@ def resolve(
         parts: Of the scene.
         view: The camera.
         visible: What it may show.
-        tile: Its pixels.
-        xs: Of the rays through the image's columns at optical depth 1.
-        ys: Of the rays through the image's rows at optical depth 1.
+        shape: Height and width of the tile.
+        xs: (h, w) of the pixels' rays at optical depth 1.
+        ys: (h, w) of the pixels' rays at optical depth 1.
         depths: Nearest depth in each layer.
         numbers: The wall's face or the part's row it belongs to.
         layers: How many layers hold something.
@@ -59,18 +58,18 @@ def resolve(
         surfaces: Gets what it is.
         whose: Gets the number of the wall's face or of the part's row.
     """
-    _background(solids, view, tile, xs, ys, depths[WALL_LAYER], numbers[WALL_LAYER], seen, surfaces, whose)
+    _background(solids, view, shape, xs, ys, depths[WALL_LAYER], numbers[WALL_LAYER], seen, surfaces, whose)
     if layers == COMMON_LAYER + 1:
-        _things(solids, parts, visible, tile, xs, ys, depths, numbers, seen, surfaces, whose)
+        _things(solids, parts, visible, shape, xs, ys, depths, numbers, seen, surfaces, whose)
     else:
-        _things_on_carriers(solids, parts, view, visible, tile, xs, ys, depths, numbers, layers, seen, surfaces, whose)
+        _things_on_carriers(solids, parts, view, visible, shape, xs, ys, depths, numbers, layers, seen, surfaces, whose)
 
 
 @_kernel
 def _background(
     solids: Solids,
     view: View,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     depths: FloatArray,
@@ -82,23 +81,23 @@ def _background(
     """Fill in walls, floor and nothing; the walls' depth stays as it is in ``depths`` but for tops of walls."""
     eye, height = view.position[2], solids.room[3]
     a, b, c = view.rotation[2, 0], view.rotation[2, 1], view.rotation[2, 2]
-    for i in range(tile[3] - tile[1]):
-        for j in range(tile[2] - tile[0]):
-            steep = a * xs[tile[0] + j] + b * ys[tile[1] + i] + c
+    for i in range(shape[0]):
+        for j in range(shape[1]):
+            steep = a * xs[i, j] + b * ys[i, j] + c
             floor = -eye / steep if steep < 0.0 and eye > 0.0 else math.inf
             wall = depths[i, j]
             seen[i, j] = min(wall, floor)
             surfaces[i, j] = WALL if wall < floor else FLOOR if floor < math.inf else NOTHING
             whose[i, j] = numbers[i, j]
     if eye > height:
-        _wall_tops(solids, view, tile, xs, ys, depths, seen, surfaces, whose)
+        _wall_tops(solids, view, shape, xs, ys, depths, seen, surfaces, whose)
 
 
 @_kernel
 def _wall_tops(
     solids: Solids,
     view: View,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     depths: FloatArray,
@@ -109,9 +108,9 @@ def _wall_tops(
     """Fill in tops of walls for a camera above them."""
     p, r, room = view.position, view.rotation, solids.room
     rows, cols = solids.clearance.shape
-    for i in range(tile[3] - tile[1]):
-        for j in range(tile[2] - tile[0]):
-            x, y = xs[tile[0] + j], ys[tile[1] + i]
+    for i in range(shape[0]):
+        for j in range(shape[1]):
+            x, y = xs[i, j], ys[i, j]
             steep = r[2, 0] * x + r[2, 1] * y + r[2, 2]
             if steep >= 0.0:
                 continue
@@ -129,7 +128,7 @@ def _things(
     solids: Solids,
     parts: Parts,
     visible: Visible,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     depths: FloatArray,
@@ -140,14 +139,14 @@ def _things(
 ) -> None:
     """Put the nearest thing before the background, where no thing in the tile carries another."""
     owners, rows, boxes = parts.owners, visible.rows, solids.boxes
-    for i in range(tile[3] - tile[1]):
-        for j in range(tile[2] - tile[0]):
+    for i in range(shape[0]):
+        for j in range(shape[1]):
             t = depths[COMMON_LAYER, i, j]
             if t == math.inf:
                 continue
             thing = owners[int(rows[numbers[COMMON_LAYER, i, j], PLACE])]
             floor = seen[i, j] if surfaces[i, j] == FLOOR else math.inf
-            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            x, y = xs[i, j], ys[i, j]
             slack = boxes[thing, SLACK]
             slack = slack / math.sqrt(x * x + y * y + 1.0) if slack > 0.0 else 0.0
             if t <= floor and t - slack <= depths[WALL_LAYER, i, j]:
@@ -160,7 +159,7 @@ def _things_on_carriers(
     parts: Parts,
     view: View,
     visible: Visible,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     depths: FloatArray,
@@ -177,15 +176,15 @@ def _things_on_carriers(
     """
     owners, rows, boxes, hulls = parts.owners, visible.rows, solids.boxes, solids.hulls
     eye, a, b, c = view.position[2], view.rotation[2, 0], view.rotation[2, 1], view.rotation[2, 2]
-    for i in range(tile[3] - tile[1]):
-        for j in range(tile[2] - tile[0]):
+    for i in range(shape[0]):
+        for j in range(shape[1]):
             nearest = COMMON_LAYER
             for layer in range(COMMON_LAYER + 1, layers):
                 if depths[layer, i, j] < depths[nearest, i, j]:
                     nearest = layer
             if depths[nearest, i, j] == math.inf:
                 continue
-            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            x, y = xs[i, j], ys[i, j]
             best = nearest
             if nearest != COMMON_LAYER:
                 steep = a * x + b * y + c

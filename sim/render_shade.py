@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 
 from sim.render_parts import BALL, CUBE, HIGH_RADIUS, HOLE, KIND, LOW_RADIUS, PLACE, PLANE, TUBE, Parts, Visible
-from sim.render_raster import Window
 from sim.render_rays import FLOOR, WALL, IntArray
 from sim.render_texture import PLAIN, noise, pattern
 from sim.visibility import View
@@ -89,7 +88,7 @@ def shade_room(
     look: FloatArray,
     view: View,
     visible: Visible,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     seen: FloatArray,
@@ -109,13 +108,13 @@ def shade_room(
     floor_u, floor_v = look[0, FLOOR_LOOK + REPEAT_U], look[0, FLOOR_LOOK + REPEAT_V]
     wall_cells, floor_cells = max(wall_u, wall_v) / view.fx, max(floor_u, floor_v) / view.fx
     up, low = light_on(lamp, 0.0, 0.0, 1.0), look[0, SKIRTING + 3]
-    for i in range(tile[3] - tile[1]):
-        for j in range(tile[2] - tile[0]):
+    for i in range(shape[0]):
+        for j in range(shape[1]):
             surface, t = surfaces[i, j], seen[i, j]
             if surface >= 0:
                 continue
             light, colour = 1.0, sky
-            x, y = xs[tile[0] + j], ys[tile[1] + i]
+            x, y = xs[i, j], ys[i, j]
             if surface == FLOOR:  # a pixel is stretched where the floor is seen at a slant
                 px = p[0] + t * (r[0, 0] * x + r[0, 1] * y + r[0, 2])
                 py = p[1] + t * (r[1, 0] * x + r[1, 1] * y + r[1, 2])
@@ -142,7 +141,7 @@ def shade_parts(
     look: FloatArray,
     view: View,
     visible: Visible,
-    tile: Window,
+    shape: tuple[int, int],
     xs: FloatArray,
     ys: FloatArray,
     seen: FloatArray,
@@ -154,12 +153,12 @@ def shade_parts(
     rows, forms, inverses, paints = visible.rows, parts.forms, parts.inverses, parts.paints
     p, r, tint = view.position, view.rotation, _triple(look, 0, TINT)
     lamp = (look[0, LAMP], look[0, LAMP + 1], look[0, LAMP + 2], look[0, AMBIENT], look[0, DIFFUSE])
-    for i in range(tile[3] - tile[1]):
-        for j in range(tile[2] - tile[0]):
+    for i in range(shape[0]):
+        for j in range(shape[1]):
             if surfaces[i, j] < 0:
                 continue
             t, row = seen[i, j], whose[i, j]
-            part, x, y = int(rows[row, PLACE]), xs[tile[0] + j], ys[tile[1] + i]
+            part, x, y = int(rows[row, PLACE]), xs[i, j], ys[i, j]
             px = rows[row, 0] + t * (rows[row, 3] * x + rows[row, 4] * y + rows[row, 5])
             py = rows[row, 1] + t * (rows[row, 6] * x + rows[row, 7] * y + rows[row, 8])
             pz = rows[row, 2] + t * (rows[row, 9] * x + rows[row, 10] * y + rows[row, 11])
