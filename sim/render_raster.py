@@ -18,6 +18,7 @@ from sim.visibility import View
 from zavis_bt.types import FloatArray
 
 _TINY = 1e-12  # stands for a direction component of zero, so that divisions stay finite
+_TIE = 1.0 + 1e-9  # of surfaces in the same place the one that is drawn last is seen: details come after what they are on
 _JOINT = 1e-9  # [m] by which faces of walls overlap at their ends
 
 _kernel = njit(cache=True, nogil=True, error_model="numpy")
@@ -141,7 +142,7 @@ def draw_wall(
         c = r[2, 1] * y + r[2, 2]
         for k in range(len(x)):
             entry = wall_entry(a0 * x[k] + a, b0 * x[k] + b, c0 * x[k] + c, away, low, high, top)
-            hit = entry < line[k]
+            hit = entry < line[k] * _TIE
             line[k] = entry if hit else line[k]
             owners[k] = number if hit else owners[k]
 
@@ -190,7 +191,7 @@ def points_on_part(
             t = cylinder_entry(ox, oy, oz, dx, dy, dz)
         else:
             t = round_entry(ox, oy, oz, dx, dy, dz, low, high, hole)
-        if t < depths[layer, k, 0]:
+        if t < depths[layer, k, 0] * _TIE:
             depths[layer, k, 0], numbers[layer, k, 0] = t, row
 
 
@@ -217,7 +218,7 @@ def points_on_wall(
         ahead = r[axis, 0] * x + (r[axis, 1] * y + r[axis, 2])
         along = r[1 - axis, 0] * x + (r[1 - axis, 1] * y + r[1 - axis, 2])
         t = wall_entry(ahead, along, r[2, 0] * x + (r[2, 1] * y + r[2, 2]), away, low, high, top)
-        if t < depths[layer, k, 0]:
+        if t < depths[layer, k, 0] * _TIE:
             depths[layer, k, 0], numbers[layer, k, 0] = t, number
 
 
@@ -240,7 +241,7 @@ def _cube_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, owne
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
     for k in range(len(xs)):
         entry = cube_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz)
-        hit = entry < line[k]
+        hit = entry < line[k] * _TIE
         line[k] = entry if hit else line[k]
         owners[k] = number if hit else owners[k]
 
@@ -253,7 +254,7 @@ def _ball_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, owne
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
     for k in range(len(xs)):
         entry = ball_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz)
-        hit = entry < line[k]
+        hit = entry < line[k] * _TIE
         line[k] = entry if hit else line[k]
         owners[k] = number if hit else owners[k]
 
@@ -266,7 +267,7 @@ def _cylinder_line(row: FloatArray, y: float, xs: FloatArray, line: FloatArray, 
     az, bz = row[MATRIX + 6], row[MATRIX + 7] * y + row[MATRIX + 8]
     for k in range(len(xs)):
         entry = cylinder_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz)
-        hit = entry < line[k]
+        hit = entry < line[k] * _TIE
         line[k] = entry if hit else line[k]
         owners[k] = number if hit else owners[k]
 
@@ -282,7 +283,7 @@ def _round_line(
     low, high, hole = form[LOW_RADIUS], form[HIGH_RADIUS], form[HOLE]
     for k in range(len(xs)):
         entry = round_entry(ox, oy, oz, ax * xs[k] + bx, ay * xs[k] + by, az * xs[k] + bz, low, high, hole)
-        if entry < line[k]:
+        if entry < line[k] * _TIE:
             line[k], owners[k] = entry, number
 
 

@@ -11,13 +11,13 @@ import math
 from numba import njit
 
 TEXTURES = (
-    "plain", "stripes", "bands", "checks", "dots", "wood", "weave", "speckle", "marble", "leather",
+    "plain", "stripes", "bands", "checks", "dots", "wood", "upright wood", "weave", "speckle", "marble", "leather",
     "screen", "keys", "text", "page", "clock", "drawers", "doors", "rings", "spines", "seams", "grid", "frame",
     "label", "strip", "planks", "bricks", "digits", "picture", "rays",
 )  # fmt: skip
 """Names of the patterns, in the order of their numbers."""
 (
-    PLAIN, STRIPES, BANDS, CHECKS, DOTS, WOOD, WEAVE, SPECKLE, MARBLE, LEATHER,
+    PLAIN, STRIPES, BANDS, CHECKS, DOTS, WOOD, WOOD_UP, WEAVE, SPECKLE, MARBLE, LEATHER,
     SCREEN, KEYS, TEXT, PAGE, CLOCK, DRAWERS, DOORS, RINGS, SPINES, SEAMS, GRID, FRAME,
     LABEL, STRIP, PLANKS, BRICKS, DIGITS, PICTURE, RAYS,
 ) = range(len(TEXTURES))  # fmt: skip
@@ -71,7 +71,9 @@ def _plain_pattern(texture: int, x: float, y: float, a: float, b: float, cell: i
         return float(cell % 2)
     if texture == DOTS:
         return 1.0 if (a - 0.5) ** 2 + (b - 0.5) ** 2 < 0.09 else 0.0
-    if texture == WOOD:
+    if texture == WOOD or texture == WOOD_UP:  # the grain runs along u, or along v
+        if texture == WOOD_UP:
+            x, y = y, x
         bend = smooth_noise(x * 0.35, y * 2.0, seed)
         line = (y * 2.0 + 1.6 * bend) % 1.0
         return 0.75 * line * line + 0.25 * smooth_noise(x * 2.0, y * 18.0, seed)
@@ -109,7 +111,7 @@ def _made_pattern(texture: int, u: float, v: float, a: float, b: float, i: int, 
         if 0.08 < u < 0.5 and 0.42 < v < 0.74:
             return 0.35 + 0.4 * smooth_noise(u * 9, v * 9, seed)
         column = (u * 3.0) % 1.0
-        return 1.0 if 0.1 < column < 0.9 and 0.3 < b < 0.75 and 0.05 < v else 0.0
+        return 1.0 if 0.1 < column < 0.9 and 0.3 < b < 0.75 and v > 0.05 else 0.0
     if texture == CLOCK:
         return _clock(u - 0.5, v - 0.5, seed)
     if texture == DRAWERS:

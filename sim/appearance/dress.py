@@ -9,10 +9,10 @@ import numpy as np
 
 from sim.appearance.facing import orientations
 from sim.appearance.catalogue import shape_of
-from sim.appearance.look import Look, stream_of
+from sim.appearance.look import Look, look_of
 from sim.appearance.palette import GLOSS, SLOTS
 from sim.appearance.shape import EVERYWHERE, Part, Pattern, Shape
-from sim.render_parts import Parts
+from sim.render_parts import CUBE, Parts
 from sim.render_shade import (
     AMBIENT, DENSITY, DIFFUSE, EDGES, FACES, GLOSS as GLOSS_COLUMN, INK, LAMP, LIGHTS, PAINT, REPEAT_U, REPEAT_V, SEED, TEXTURE,
 )  # fmt: skip
@@ -22,9 +22,15 @@ from zavis_bt.types import FloatArray
 
 _EDGE, _EDGE_SHARE = 0.012, 0.05  # width of dark edges [m], at most this share of the half side
 _AXES = {"x": 0, "y": 1, "z": 2}
-_FINISH_REPEAT = {"stripes": 5.0, "bands": 5.0, "checks": 5.0, "dots": 4.0, "wood": 1.6, "weave": 24.0, "leather": 9.0,
-                  "speckle": 12.0, "marble": 2.0, "planks": 3.0}  # fmt: skip
-_FINISH_SCALE = {"wood": 3.0, "weave": 60.0, "leather": 22.0, "marble": 6.0, "speckle": 40.0}  # cells per metre
+_FINISH_CELLS = {
+    "wood": (3.0, 1.4),
+    "weave": (60.0, 14.0),
+    "leather": (22.0, 5.0),
+    "marble": (6.0, 1.5),
+    "speckle": (40.0, 14.0),
+}
+"""Cells of a material's pattern per metre, and at least over the whole thing; those of other patterns are these many:"""
+_FINISH_REPEAT = 5.0
 
 
 class Template(NamedTuple):
@@ -59,10 +65,7 @@ def dress(world: World, lamp: FloatArray) -> tuple[Parts, tuple[Look, ...]]:
     boxes = _boxes(world)
     shapes = [shape_of(thing.category) for thing in things]
     turns = orientations(world, boxes, shapes)
-    looks = tuple(
-        Look.drawn(shape, stream_of(world.name, thing.id, thing.appearance), thing.colour)
-        for shape, thing in zip(shapes, things, strict=True)
-    )
+    looks = tuple(look_of(thing.category, thing.colour, world.name, thing.id, thing.appearance) for thing in things)
     rows = [_rows(*row) for row in zip(shapes, looks, boxes, turns, strict=True)]
     first = np.concatenate(([0], np.cumsum([len(row[0]) for row in rows], dtype=np.int64))).astype(np.int32)
     frames = _stack([row[0] for row in rows], 12)
@@ -179,17 +182,33 @@ def _paints(table: Template, look: Look, sizes: FloatArray) -> FloatArray:
     paints[metres, REPEAT_U] *= long[metres]
     paints[metres, REPEAT_V] *= np.maximum(high, np.minimum(sizes[:, 0], sizes[:, 1]))[metres]
     if look.finish != "plain":
-        bare, repeat = table.bare, _FINISH_REPEAT.get(look.finish, 1.0)
-        paints[bare, TEXTURE] = TEXTURES.index(look.finish)
-        if look.finish in _FINISH_SCALE:
-            paints[bare, REPEAT_U] = _FINISH_SCALE[look.finish] * long[bare]
-            paints[bare, REPEAT_V] = _FINISH_SCALE[look.finish] * np.maximum(high, 0.3 * long)[bare]
-        else:
-            paints[bare, REPEAT_U] = paints[bare, REPEAT_V] = repeat
+        _finish(paints, table, look, sizes)
     paints[:, SEED] = look.seed + np.arange(len(paints))
     paints[:, GLOSS_COLUMN] = table.gloss
     paints[:, DENSITY] = np.maximum(paints[:, REPEAT_U], paints[:, REPEAT_V]) / np.maximum(long, high)
     return paints
+
+
+def _finish(paints: FloatArray, table: Template, look: Look, sizes: FloatArray) -> None:
+    """Give the body's parts their pattern, of the same scale all over the thing."""
+    bare = table.bare
+    largest = float(sizes.max())
+    per_metre, least = _FINISH_CELLS.get(look.finish, (0.0, _FINISH_REPEAT))
+    scale = max(per_metre, least / largest)
+    across, deep, high = sizes[bare].T
+    flat = high < 0.5 * np.minimum(across, deep)
+    round_ = table.forms[bare, 0] != CUBE
+    along = np.where(round_, np.pi / 2 * (across + deep), np.maximum(across, deep))
+    up = np.where(flat & ~round_, np.minimum(across, deep), high)
+    counts = np.maximum(np.round(scale * np.column_stack((along, up))), 1.0)
+    whole = look.finish in ("stripes", "bands", "checks", "dots")  # no cut cells on these
+    paints[bare, REPEAT_U : REPEAT_V + 1] = counts if whole else scale * np.column_stack((along, up))
+    paints[bare, TEXTURE] = TEXTURES.index(look.finish)
+    if look.finish == "wood":
+        paints[np.flatnonzero(bare)[high > 1.2 * np.maximum(across, deep)], TEXTURE] = TEXTURES.index("upright wood")
+    if not whole:
+        body = look.colours[0]
+        paints[bare, INK : INK + 3] = 0.8 * body if body.mean() > 70 else 1.25 * body + 14
 
 
 def _inverses(frames: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ SHAPES: dict[str, Shape] = {
         size=(0.46, 0.4, 0.15), palette={"body": ("blue", "white", "red", "green", "cream", "grey", "yellow", "purple", "pink", "teal")}, finishes=_CLOTH, pose="lying",
     ),
     "cloth": shape(
-        (box((-1, 1), (-1, 0.9), (0, 0.4)), box((-0.9, 0.96), (-0.8, 1), (0.3, 0.7)), ball((-0.7, 0.5), (-0.6, 0.4), (0.2, 1)), box((0.3, 0.9), (-0.96, 0.1), (0.3, 0.8), lean=("y", "x", 0.04))),
+        (box((-1, 1), (-1, 0.9), (0, 0.4)), box((-0.9, 0.96), (-0.8, 1), (0.3, 0.7)), box((-0.6, 0.7), (-0.7, 0.6), (0.6, 0.85), lean=("y", "x", 0.1)), ball((-0.8, 0.6), (-0.5, 0.3), (0.4, 1))),
         size=(0.26, 0.2, 0.03), palette={"body": ("grey", "white", "blue", "red", "yellow", "green", "pink")}, finishes=("checks", "stripes", "weave"), pose="lying",
     ),
     "towel": shape(

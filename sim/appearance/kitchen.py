@@ -25,10 +25,10 @@ SHAPES: dict[str, Shape] = {
         size=(0.08, 0.08, 0.14), palette={"body": ("glass", "glass", "blue", "green", "sky", "mint"), "accent": ("sky", "glass")}, gloss=0.7,
     ),
     "bottle": shape(
-        (rod((-1, 1), (-1, 1), (0, 0.58)), rod((-1, 1), (-1, 1), (0.58, 0.74), taper=(1, 0.36)), rod((-0.36, 0.36), (-0.36, 0.36), (0.74, 0.93)),
+        (rod((-0.97, 0.97), (-0.97, 0.97), (0, 0.58)), rod((-0.97, 0.97), (-0.97, 0.97), (0.58, 0.74), taper=(1, 0.36)), rod((-0.36, 0.36), (-0.36, 0.36), (0.74, 0.93)),
          rod((-0.42, 0.42), (-0.42, 0.42), (0.9, 1), "dark"), rod((-1, 1), (-1, 1), (0.16, 0.48), "paper", Pattern("label", "ink", (1, 1), MANTLE))),
-        (rod((-1, 1), (-1, 1), (0, 0.66)), ball((-1, 1), (-1, 1), (0.54, 0.78)), rod((-0.32, 0.32), (-0.32, 0.32), (0.74, 0.94)),
-         rod((-0.4, 0.4), (-0.4, 0.4), (0.92, 1), "trim"), rod((-1, 1), (-1, 1), (0.2, 0.5), "accent", Pattern("label", "paper", (1, 1), MANTLE))),
+        (rod((-0.97, 0.97), (-0.97, 0.97), (0, 0.66)), ball((-0.97, 0.97), (-0.97, 0.97), (0.54, 0.78)), rod((-0.32, 0.32), (-0.32, 0.32), (0.74, 0.94)),
+         rod((-0.4, 0.4), (-0.4, 0.4), (0.92, 1), "trim"), rod((-1, 1), (-1, 1), (0.2, 0.5), "paper", Pattern("label", "dark", (1, 1), MANTLE))),
         size=(0.08, 0.08, 0.3), palette={"body": ("green", "leaf", "maroon", "brown", "blue", "glass", "orange")}, pose="longest up", gloss=0.8,
     ),
     "spray bottle": shape(
@@ -65,17 +65,17 @@ SHAPES: dict[str, Shape] = {
         size=(0.24, 0.18, 0.22), palette={"body": ("silver", "steel", "red", "black", "white", "blue", "yellow")}, gloss=0.6,
     ),
     "apple": shape(
-        (ball((-1, 0.3), (-0.95, 0.95), (0, 0.84)), ball((-0.3, 1), (-0.95, 0.95), (0, 0.84)), ball((-0.85, 0.85), (-1, 1), (0.02, 0.84)), rod((-0.06, 0.06), (-0.06, 0.06), (0.74, 1), "wood", lean=("x", "z", 0.1)),
+        (ball((-1, 1), (-1, 1), (0.04, 0.86)), rod((-0.5, 0.5), (-0.5, 0.5), (0, 0.2), taper=(0.8, 1)), rod((-0.22, 0.22), (-0.22, 0.22), (0.8, 0.862), "trim"), rod((-0.07, 0.07), (-0.07, 0.07), (0.8, 1), "wood", lean=("x", "z", 0.1)),
          ball((0.0, 0.5), (-0.14, 0.14), (0.86, 0.96), "leaf")),
-        size=(0.08, 0.08, 0.09), palette={"body": ("red", "red", "maroon", "green", "yellow"), "wood": ("walnut",)}, gloss=0.5,
+        size=(0.08, 0.08, 0.09), palette={"body": ("red", "red", "brick", "green", "yellow"), "wood": ("walnut",)}, gloss=0.5,
     ),
     "orange": shape(
-        (ball((-1, 1), (-1, 1), (0, 1), "body", Pattern("speckle", "accent", (30, 20))), ball((-0.12, 0.12), (-0.12, 0.12), (0.95, 1), "leaf")),
-        size=(0.08, 0.08, 0.08), palette={"body": ("orange",)}, gloss=0.2,
+        (ball((-1, 1), (-1, 1), (0, 1)), ball((-0.14, 0.14), (-0.14, 0.14), (0.94, 1.0), "leaf")),
+        size=(0.08, 0.08, 0.08), palette={"body": ("orange",)}, finishes=("leather", "plain"), gloss=0.2,
     ),
     "banana": shape(
-        (box((-0.5, 0.5), (-1, -0.1), (0.0, 0.75)), box((-0.9, -0.4), (-0.7, 0.1), (0.05, 0.8), lean=("y", "x", -0.3)), box((0.4, 0.9), (-0.7, 0.1), (0.05, 0.8), lean=("y", "x", 0.3)),
-         rod((-1, -0.78), (0.2, 0.7), (0.2, 0.7), "dark", axis="y"), rod((0.8, 1), (0.3, 1), (0.25, 1), "trim", axis="y", taper=(1, 0.6))),
+        (rod((-0.5, 0.5), (-1, -0.1), (0.0, 0.9), axis="x"), rod((-0.94, -0.44), (-0.72, 0.18), (0.0, 0.9), axis="x", taper=(0.6, 1), lean=("y", "x", -0.28)), rod((0.44, 0.94), (-0.72, 0.18), (0.0, 0.9), axis="x", taper=(1, 0.6), lean=("y", "x", 0.28)),
+         rod((-1, -0.84), (0.0, 0.5), (0.3, 0.6), "dark", axis="y"), rod((0.82, 1), (0.2, 1), (0.25, 1), "trim", axis="y", taper=(1, 0.6))),
         size=(0.19, 0.08, 0.04), palette={"body": ("banana", "yellow"), "trim": ("olive",), "dark": ("walnut",)}, pose="lying",
     ),
     "tomato": shape(
@@ -84,7 +84,7 @@ SHAPES: dict[str, Shape] = {
     ),
     "bread": shape(
         (box((-0.9, 0.9), (-0.8, 0.8), (0, 0.62), "body"), rod((-0.95, 0.95), (-1, 1), (0.3, 1), axis="x"), rod((-1, -0.94), (-0.9, 0.9), (0.1, 0.9), "paper", axis="x"), rod((0.94, 1), (-0.9, 0.9), (0.1, 0.9), "paper", axis="x")),
-        size=(0.26, 0.12, 0.12), palette={"body": ("tan", "oak", "brown"), "paper": ("cream", "beige")}, finishes=("leather", "bands"),
+        size=(0.26, 0.12, 0.12), palette={"body": ("tan", "oak", "brown"), "paper": ("cream", "beige")}, finishes=("leather",),
     ),
     "egg": shape((ball((-1, 1), (-1, 1), (0, 1)),), size=(0.06, 0.045, 0.045), palette={"body": ("cream", "white", "tan")}, finishes=("plain",)),
     "pear": shape(
@@ -98,7 +98,7 @@ SHAPES: dict[str, Shape] = {
         size=(0.17, 0.17, 0.15), palette={"body": ("green", "mint", "leaf")},
     ),
     "fork": shape(
-        (box((-1, 0.35), (-0.3, 0.3), (0, 0.7)), box((0.25, 0.55), (-1, 1), (0, 0.8)), mirrored(box((0.5, 1), (0.66, 1), (0.1, 1)), "y"), mirrored(box((0.5, 1), (0.1, 0.36), (0.1, 1)), "y")),
+        (box((-1, 0.35), (-0.26, 0.26), (0, 0.7)), box((0.3, 0.5), (-1, 1), (0, 0.8)), mirrored(box((0.48, 1), (0.7, 1), (0.1, 1)), "y"), box((0.48, 1), (-0.16, 0.16), (0.1, 1))),
         size=(0.19, 0.026, 0.012), palette={"body": ("silver", "steel", "silver", "red", "black")}, pose="lying", gloss=0.7,
     ),
     "spoon": shape(
@@ -106,7 +106,7 @@ SHAPES: dict[str, Shape] = {
         size=(0.18, 0.038, 0.016), palette={"body": ("silver", "steel", "silver", "pine", "black")}, pose="lying", gloss=0.7,
     ),
     "knife": shape(
-        (box((-1, -0.1), (-0.8, 0.6), (0, 1), "dark"), box((-0.1, 0.8), (-1, 1), (0.3, 0.7), "metal"), box((0.7, 1), (-0.6, 0.6), (0.3, 0.7), "metal", lean=("y", "x", 0.4))),
+        (box((-1, -0.1), (-0.8, 0.6), (0, 1), "dark"), ball((-0.5, 1), (-0.7, 0.9), (0.3, 0.7), "metal"), box((-0.2, 0.5), (-1, -0.1), (0.3, 0.7), "metal")),
         size=(0.25, 0.035, 0.015), pose="lying",
     ),
     "toaster": shape(
@@ -133,7 +133,7 @@ SHAPES: dict[str, Shape] = {
         size=(0.066, 0.066, 0.12), palette={"body": ("red", "blue", "green", "orange", "silver", "black", "purple")}, gloss=0.6,
     ),
     "jar": shape(
-        (rod((-1, 1), (-1, 1), (0, 0.78)), rod((-0.84, 0.84), (-0.84, 0.84), (0.78, 0.84), "glass"), rod((-0.9, 0.9), (-0.9, 0.9), (0.84, 1), "trim"), rod((-1, 1), (-1, 1), (0.2, 0.6), "paper", Pattern("label", "ink", (1, 1), MANTLE))),
+        (rod((-0.97, 0.97), (-0.97, 0.97), (0, 0.78)), rod((-0.84, 0.84), (-0.84, 0.84), (0.78, 0.84), "glass"), rod((-0.9, 0.9), (-0.9, 0.9), (0.84, 1), "trim"), rod((-1, 1), (-1, 1), (0.2, 0.6), "paper", Pattern("label", "ink", (1, 1), MANTLE))),
         size=(0.08, 0.08, 0.11), palette={"body": ("red", "orange", "brown", "purple", "yellow", "green"), "trim": ("gold", "white", "red", "silver")}, gloss=0.6,
     ),
 }  # fmt: skip

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from sim.appearance.catalogue import shape_of
 from sim.appearance.palette import MATERIALS, SLOTS, accent_of, basic_of, rgb_of, trim_of
 from sim.appearance.shape import Shape
 from zavis_bt.types import FloatArray
@@ -41,29 +43,38 @@ class Look:
             rng: Source of the draws.
             colour: Name of the body's colour; drawn from the shape's palette if None, or if no colour has the name.
         """
-        variant = int(rng.integers(len(shape.variants)))
-        names = {slot: _pick(shape.palette.get(slot, MATERIALS.get(slot, ())), rng) for slot in SLOTS}
-        body = colour if colour is not None and rgb_of(colour) is not None else names["body"]
-        names["body"] = body
-        finish = _pick(shape.finishes, rng)
-        colours = np.empty((len(SLOTS), 3))
-        for number, slot in enumerate(SLOTS):
-            rgb = rgb_of(names[slot]) if names[slot] else None
-            colours[number] = np.array(rgb or (0, 0, 0)) * (1 + _JITTER * rng.uniform(-1, 0.6))
-        if not shape.palette.get("trim"):
+        chances = iter(rng.random(len(SLOTS) * 2 + 8).tolist())
+        variant = int(next(chances) * len(shape.variants))
+        finish = shape.finishes[int(next(chances) * len(shape.finishes))]
+        names = {slot: options[int(next(chances) * len(options))] for slot, options in _options(shape)}
+        if colour is not None and rgb_of(colour) is not None:
+            names["body"] = colour
+        colours = np.array([(names[slot] and rgb_of(names[slot])) or (0, 0, 0) for slot in SLOTS], dtype=np.float64)
+        colours *= np.array([[1 + _JITTER * (1.6 * next(chances) - 1)] for _ in SLOTS])
+        if not names["trim"]:
             colours[SLOTS.index("trim")] = trim_of(colours[0])
-        if not shape.palette.get("accent"):
-            colours[SLOTS.index("accent")] = accent_of(colours[0], rng)
-        warp = 1 + _WARP * rng.uniform(-1, 1), 1 + _WARP * rng.uniform(-1, 1)
-        return cls(variant, colours, basic_of(body), finish, warp, int(rng.integers(1 << 20)))
+        if not names["accent"]:
+            colours[SLOTS.index("accent")] = accent_of(colours[0], next(chances))
+        warp = 1 + _WARP * (2 * next(chances) - 1), 1 + _WARP * (2 * next(chances) - 1)
+        return cls(variant, colours, basic_of(names["body"]), finish, warp, int(next(chances) * (1 << 20)))
 
 
-def stream_of(world: str, thing: str, appearance: int | None) -> np.random.Generator:
-    """Return the source of a thing's look: of its number if it has one, else of its own and the world's name."""
-    text = f"{world}/{thing}" if appearance is None else f"#{appearance}"
+@lru_cache(maxsize=4096)
+def look_of(category: str, colour: str | None, world: str, thing: str, appearance: int | None) -> Look:
+    """Return how a thing of a world looks.
+
+    Args:
+        category: What it is.
+        colour: Of its body, None to draw it.
+        world: Name of the world.
+        thing: Its id.
+        appearance: Seed of the look; None makes it follow from id and world.
+    """
+    text = f"{world}/{thing}" if appearance is None else f"{category}#{appearance}"
     digest = hashlib.blake2b(text.encode(), digest_size=8).digest()
-    return np.random.default_rng(int.from_bytes(digest, "little"))
+    return Look.drawn(shape_of(category), np.random.default_rng(int.from_bytes(digest, "little")), colour)
 
 
-def _pick(names: tuple[str, ...], rng: np.random.Generator) -> str:
-    return names[int(rng.integers(len(names)))] if names else ""
+def _options(shape: Shape) -> list[tuple[str, tuple[str, ...]]]:
+    """Return the colours each slot is drawn from; an empty name stands for one that follows from the body's."""
+    return [(slot, shape.palette.get(slot) or MATERIALS.get(slot) or ("",)) for slot in SLOTS]

@@ -86,8 +86,13 @@ def trim_of(body: FloatArray) -> FloatArray:
     return body * 0.62 if bright > 75 else np.minimum(body * 1.35 + 34, 255)
 
 
-def accent_of(body: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Return the second colour of a pattern: a lighter or darker tone of the body's, so that its hue stays."""
-    if float(body.mean()) > 150:
-        return np.asarray(body * rng.uniform(0.55, 0.75))
-    return np.asarray(body + (255 - body) * rng.uniform(0.35, 0.6))
+def accent_of(body: FloatArray, chance: float) -> FloatArray:
+    """Return the second colour of a pattern: a lighter or darker tone of the body's, so that its hue stays.
+
+    Args:
+        body: (3,) r, g, b.
+        chance: 0 to 1, how far from the body's.
+    """
+    if float(body.sum()) > 450:
+        return np.asarray(body * (0.75 - 0.2 * chance))
+    return np.asarray(body + (255 - body) * (0.35 + 0.25 * chance))
