@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.render import Picture, measure, render
+from sim.render_labels import Label, pixel_boxes, whole_pixels
 from sim.render_parts import Visible, visible_parts
 from sim.render_rays import IntArray
 from sim.scene import Scene
@@ -102,6 +103,19 @@ class SimFrame(RgbdFrame):
     def surfaces(self) -> IntArray:
         """(h, w) what each pixel shows: index of the thing in `Scene.things`, or negative for walls, floor, nothing."""
         return self._picture.surfaces
+
+    @property
+    def labels(self) -> tuple[Label, ...]:
+        """What has pixels in the image, with its exact box; unlike `instances` it asks for the whole image."""
+        things, looks, furniture = self._scene.things, self._scene.looks, len(self._scene.furniture)
+        boxes, pixels = pixel_boxes(self.surfaces, len(things))
+        whole = whole_pixels(self._scene.parts, self._visible, self._view)
+        found = []
+        for k in np.flatnonzero(pixels).tolist():
+            thing, box = things[k], Box(*(float(edge) for edge in boxes[k]))
+            share = float(pixels[k] / max(whole[k], pixels[k]))
+            found.append(Label(k, thing.id, thing.category, looks[k].colour, k < furniture, box, int(pixels[k]), share))
+        return tuple(found)
 
     def crop(self, box: Box) -> NDArray[np.uint8]:
         """Return the patch inside the box, rendering no more than it."""

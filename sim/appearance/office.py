@@ -65,7 +65,7 @@ SHAPES: dict[str, Shape] = {
         (box((-1, 1), (-1, 1), (0.84, 1), "body", Pattern("text", "accent", (1, 5), TOP)), box((-1, 1), (-1, 1), (0, 0.16)), box((-1, 1), (0.9, 1), (0, 1)), box((-0.95, 0.95), (-0.95, 0.92), (0.16, 0.84), "paper", Pattern("bands", "fabric", (1, 6), SIDES | FRONT))),
         (box((-1, 1), (-1, 1), (0.86, 1)), box((-1, 1), (-1, 1), (0, 0.14)), box((-1, 1), (0.9, 1), (0, 1), "trim"), box((-0.95, 0.95), (-0.95, 0.92), (0.14, 0.86), "paper", Pattern("bands", "fabric", (1, 6), SIDES | FRONT)),
          box((-0.7, 0.3), (-0.5, 0.6), (0.98, 1), "accent", Pattern("picture", "trim", faces=TOP))),
-        size=(0.22, 0.16, 0.035), palette={"body": ("red", "blue", "green", "navy", "maroon", "brown", "yellow", "purple", "black", "orange", "teal"), "accent": ("gold", "cream", "white")}, pose="lying",
+        size=(0.22, 0.16, 0.035), palette={"body": ("red", "blue", "green", "navy", "maroon", "brown", "yellow", "purple", "black", "orange", "teal"), "accent": ("cream", "white")}, pose="lying",
     ),
     "newspaper": shape(
         (box((-1, 1), (-1, 1), (0, 0.5), "body", Pattern("page", "ink", (1, 22), TOP)), box((-0.98, 0.97), (-0.03, 0.98), (0.5, 1), "body", Pattern("page", "ink", (1, 14), TOP))),

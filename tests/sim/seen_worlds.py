@@ -46,5 +46,32 @@ def look(world: World, x: float, y: float, yaw: float = 0.0, tilt: float = 0.0, 
     return SimCamera(Scene.of(world), camera_spec()).capture(Pose2D(x, y, yaw), 0.0, tilt, stamp)
 
 
+def rays_of(frame: SimFrame) -> np.ndarray:
+    """Return (h * w, 3) the directions of the pixels' rays in the map, optical depth 1."""
+    i, rotation = frame.intrinsics, frame.transform_camera_to_map[:3, :3]
+    rows, cols = np.mgrid[0 : i.height, 0 : i.width]
+    optical = np.stack(((cols + 0.5 - i.cx) / i.fx, (rows + 0.5 - i.cy) / i.fy, np.ones(cols.shape)), axis=-1)
+    return optical.reshape(-1, 3) @ rotation.T
+
+
+def snapshot(
+    world: World,
+    x: float,
+    y: float,
+    yaw: float = 0.0,
+    tilt: float = 0.0,
+    height: float = 0.9,
+    size: tuple[int, int] = (96, 72),
+) -> SimFrame:
+    """Return a small frame of a camera that measures any depth."""
+    spec = CameraSpec(CameraIntrinsics.from_fov(*size, math.radians(75)), 0.0, height, 1e-3, 1e3, 15.0)
+    return SimCamera(Scene.of(world), spec).capture(Pose2D(x, y, yaw), 0.0, tilt, 0.0)
+
+
+def middle(frame: SimFrame) -> int:
+    """Return what is seen in the middle of the image."""
+    return int(frame.surfaces[frame.surfaces.shape[0] // 2, frame.surfaces.shape[1] // 2])
+
+
 def seen(frame: SimFrame, instance: str) -> InstanceView | None:
     return next((view for view in frame.instances if view.id == instance), None)

@@ -47,7 +47,15 @@ def test_a_world_file_becomes_values_in_si_units(write) -> None:
     assert (mug.on, mug.colour, mug.size) == ("bed_1", "red", (0.1, 0.1, 0.1))
     assert (start.x, start.y, start.yaw) == (1.5, 0.5, pytest.approx(math.pi))
     assert world.wall_height == 2.5
+    assert (bed.colour, bed.appearance, mug.appearance) == (None, None, None)
     assert world.grid.shape == (10, 20)
+
+
+def test_a_world_may_say_how_things_look(write) -> None:
+    text = GOOD.replace("height: 0.5}", "height: 0.5, colour: blue, appearance: 7}")
+    world = load_world(write(text.replace("colour: red}", "colour: red, appearance: 0}")))
+    assert (world.furniture[0].colour, world.furniture[0].appearance) == ("blue", 7)
+    assert (world.objects[0].colour, world.objects[0].appearance) == ("red", 0)
 
 
 @pytest.mark.parametrize(
@@ -59,6 +67,10 @@ def test_a_world_file_becomes_values_in_si_units(write) -> None:
         ("size: [0.4, 0.2]", "size: [-0.4, 0.2]", 5, r"size\[0\]: should be greater than 0, not -0.4"),
         ("x: 0.5, y: 0.5, yaw", "x: 9.5, y: 0.5, yaw", 5, "'bed_1' at .9.5, 0.5. is outside the map"),
         ("category: mug, x: 0.5", "category: mug, x: .nan", 7, "finite"),
+        ("height: 0.5}", "height: 0.5, colour: ''}", 5, r"colour: .* at least 1 character"),
+        ("height: 0.5}", "height: 0.5, appearance: -1}", 5, r"appearance: should be greater than or equal to 0"),
+        ("colour: red}", "appearance: red}", 7, r"appearance: should be a valid integer"),
+        ("colour: red}", "color: red}", 7, r"unknown key .*color.*did you mean 'colour'"),
         ("on: bed_1", "on: bed1", 7, r"on unknown furniture 'bed1' \(did you mean 'bed_1'\?\)"),
         ("[1.5, 0.5, 180]", "[0.5, 0.5, 180]", 9, "start .0.5, 0.5. is in an obstacle"),
         ("[1.5, 0.5, 180]", "[1.5, 5, 180]", 9, "start .1.5, 5. is outside the map"),
