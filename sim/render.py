@@ -1,8 +1,8 @@
 """Colour, depth and identity images of a scene.
 
-A window of the image is cut into tiles. For each tile the faces of walls and the parts of things are drawn into buffers
-that keep the nearest depth; then each pixel gets what it sees, and only that is shaded. Furniture that carries something
-in the tile has a buffer of its own, as it is open towards what it carries (`sim.render_rays` has the rules).
+A window of the image is cut into tiles. For each tile the faces of walls and the parts of things are drawn into
+buffers that keep the nearest depth; then each pixel gets what it sees, and only that is shaded. Furniture that carries
+something has a buffer of its own, as it is open towards what it carries (`sim.render_rays` has the rules).
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def _draw(
 ) -> int:
     """Draw all that meets a window, or only some pixels of it if there are any given.
 
-    Returns how many layers hold something. Layer 0 are the walls, layer 1 is what carries nothing, each further layer is
-    one carrier.
+    Returns how many layers hold something. Layer 0 are the walls, layer 1 is what carries nothing, each further layer
+    is one carrier.
     """
     left, top, right, bottom = window
     rows, walls, things, forms, single = visible.rows, visible.walls, visible.things, parts.forms, len(pixels) > 0

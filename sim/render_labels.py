@@ -20,7 +20,7 @@ _kernel = njit(cache=True, nogil=True, error_model="numpy")
 class Label(NamedTuple):
     """One thing that an image shows."""
 
-    index: int
+    number: int
     """In `Scene.things` and in `SimFrame.surfaces`."""
     id: str
     category: str

@@ -19,6 +19,7 @@ COLOURS: dict[str, tuple[int, int, int]] = {
 COLOUR_SPELLINGS = {"gray": "grey", "violet": "purple"}
 """Other words for the same colours."""
 
+
 def basic_colour(word: str) -> str | None:
     """Return the colour a word names, or None if it names none."""
     word = COLOUR_SPELLINGS.get(word, word)

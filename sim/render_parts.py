@@ -1,8 +1,8 @@
 """What the camera sees of a scene: parts of things in the map, and what one view can show of them.
 
 A *part* is a solid in its own space, where it fills the cube from -1 to 1: a cube, a ball, or a round body about its
-third axis. Its *frame* takes that space to the map. A *ray* goes from the optical centre through a pixel and has optical
-depth 1, so that distances along it are depths.
+third axis. Its *frame* takes that space to the map. A *ray* goes from the optical centre through a pixel and has
+optical depth 1, so that distances along it are depths.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def wall_faces(walls: np.ndarray, resolution: float, origin: tuple[float, float]
         steps = np.diff(cells.astype(np.int8), axis=1)
         for side, sign in enumerate((1, -1)):
             edges = np.pad(steps == sign, ((1, 1), (0, 0))).astype(np.int8)
-            starts, ends = (np.argwhere(np.diff(edges, axis=0).T == change) for change in (1, -1))
+            starts, ends = (np.argwhere(change == np.diff(edges, axis=0).T) for change in (1, -1))
             x0, y0 = origin[axis], origin[1 - axis]
             planes = x0 + (starts[:, 0] + 1) * resolution
             low, high = y0 + starts[:, 1] * resolution, y0 + ends[:, 1] * resolution
@@ -216,7 +216,7 @@ def _place(frame: FloatArray, view: View, corners: FloatArray, rect: FloatArray)
     rect[0], rect[1] = max(math.floor(u0 + view.cx - 1.0), 0.0), max(math.floor(v0 + view.cy - 1.0), 0.0)
     rect[2] = min(math.ceil(u1 + view.cx + 1.0), float(view.width))
     rect[3] = min(math.ceil(v1 + view.cy + 1.0), float(view.height))
-    return rect[0] < rect[2] and rect[1] < rect[3]
+    return bool(rect[0] < rect[2] and rect[1] < rect[3])
 
 
 @_kernel

@@ -1,7 +1,8 @@
-"""What a ray sees: the one kernel behind depth readings, rendered images and visibility.
+"""What hides what: the rules of visibility, and rays against boxes and walls by which simulated perception judges.
 
-Rays are given as an origin and a direction of any length; distances ``t`` are in units of that length, so a direction
-with optical depth 1 gives depths and a unit direction gives metres.
+Rays are given as an origin and a direction of any length; distances ``t`` are in units of that length, so a unit
+direction gives metres. The camera's images (`sim.render`) keep the same rules, but see the parts of things
+(`sim.appearance`) where this module has their boxes: one sees between the legs of a chair there, and not here.
 
 Visibility rules:
     * A box hides what lies behind it, whatever the box is.
@@ -140,71 +141,6 @@ def is_hull(hulls: IntArray, box: int, other: int) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _seen_through_hulls(hulls: IntArray, hits: IntArray, entries: FloatArray, count: int, nearest: int) -> int:
-    """Return the place in ``hits`` of the farthest box that no other box hides; ``nearest`` if there is none."""
-    seen = nearest
-    for k in range(count):
-        if entries[k] <= entries[seen] or hits[k, 1] == BOTTOM:
-            continue
-        hidden = False
-        for other in range(count):
-            if entries[other] < entries[k] and not is_hull(hulls, hits[k, 0], hits[other, 0]):
-                hidden = True
-                break
-        if not hidden:
-            seen = k
-    return seen
-
-
-@_kernel
-def first_hit(
-    boxes: FloatArray,
-    hulls: IntArray,
-    clearance: IntArray,
-    room: FloatArray,
-    ray: Ray,
-    ids: IntArray,
-    count: int,
-    hits: IntArray,
-    entries: FloatArray,
-) -> tuple[float, int, int]:
-    """Return what a ray sees: distance, surface id, face.
-
-    Args:
-        boxes: As in `Solids`.
-        hulls: As in `Solids`.
-        clearance: As in `Solids`.
-        room: As in `Solids`.
-        ray: Origin and direction.
-        ids: Its first ``count`` entries are the boxes to consider.
-        count: How many.
-        hits: Scratch (at least ``count``, 2).
-        entries: Scratch, at least ``count`` long.
-    """
-    nearest, hit_count = -1, 0
-    for k in range(count):
-        entry, face = box_entry(boxes, ids[k], ray)
-        if face >= 0:
-            hits[hit_count, 0], hits[hit_count, 1], entries[hit_count] = ids[k], face, entry
-            if nearest < 0 or entry < entries[nearest]:
-                nearest = hit_count
-            hit_count += 1
-    seen = nearest
-    if hit_count > 1 and boxes[hits[nearest, 0], CARRIES] > 0.0:
-        seen = _seen_through_hulls(hulls, hits, entries, hit_count, nearest)
-    floor = -ray[2] / ray[5] if ray[5] < 0.0 and ray[2] > 0.0 else math.inf
-    wall, wall_face = wall_entry(clearance, room, ray, floor if seen < 0 else min(floor, entries[seen]))
-    if seen >= 0:
-        length = math.sqrt(ray[3] * ray[3] + ray[4] * ray[4] + ray[5] * ray[5])
-        for k in (seen, nearest):
-            if entries[k] <= floor and entries[k] - boxes[hits[k, 0], SLACK] / length <= wall:
-                return entries[k], hits[k, 0], hits[k, 1]
-    if wall < math.inf:
-        return wall, WALL, wall_face
-    return (floor, FLOOR, TOP) if floor < math.inf else (math.inf, NOTHING, -1)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def is_hidden(
     boxes: FloatArray,
     hulls: IntArray,
@@ -235,16 +171,3 @@ def is_hidden(
     length = math.sqrt(ray[3] * ray[3] + ray[4] * ray[4] + ray[5] * ray[5])
     slack: float = boxes[box, SLACK]
     return wall < 1.0 - slack / length
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def cast_rays(
-    solids: Solids, origin: FloatArray, directions: FloatArray, distances: FloatArray, surfaces: IntArray
-) -> None:
-    """Fill (n,) distances and surface ids for (n, 3) directions from one origin."""
-    boxes, hulls, clearance, room = solids
-    count = len(boxes)
-    ids, hits, entries = np.arange(count).astype(np.int32), np.empty((count, 2), np.int32), np.empty(count)
-    for i in range(len(directions)):
-        ray = (origin[0], origin[1], origin[2], directions[i, 0], directions[i, 1], directions[i, 2])
-        distances[i], surfaces[i], _ = first_hit(boxes, hulls, clearance, room, ray, ids, count, hits, entries)

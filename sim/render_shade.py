@@ -36,7 +36,8 @@ colour of what is above the walls."""
 
 _EDGE_SHADE = 0.72
 _BOOKS = np.array(
-    [(158, 44, 42), (38, 66, 128), (52, 104, 66), (206, 178, 118), (92, 58, 44), (222, 214, 196), (60, 60, 66), (196, 118, 46)],
+    [(158, 44, 42), (38, 66, 128), (52, 104, 66), (206, 178, 118),
+     (92, 58, 44), (222, 214, 196), (60, 60, 66), (196, 118, 46)],
     dtype=np.float64,
 )  # fmt: skip
 _MEAN = 0.4  # what patterns fade to
@@ -151,7 +152,7 @@ def shade_parts(
 ) -> None:
     """Fill in (h, w, 3) colours of the pixels that show things; see `sim.render_resolve.resolve`."""
     rows, forms, inverses, paints = visible.rows, parts.forms, parts.inverses, parts.paints
-    p, r, tint = view.position, view.rotation, _triple(look, 0, TINT)
+    r, tint = view.rotation, _triple(look, 0, TINT)
     lamp = (look[0, LAMP], look[0, LAMP + 1], look[0, LAMP + 2], look[0, AMBIENT], look[0, DIFFUSE])
     for i in range(shape[0]):
         for j in range(shape[1]):

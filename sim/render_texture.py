@@ -71,7 +71,7 @@ def _plain_pattern(texture: int, x: float, y: float, a: float, b: float, cell: i
         return float(cell % 2)
     if texture == DOTS:
         return 1.0 if (a - 0.5) ** 2 + (b - 0.5) ** 2 < 0.09 else 0.0
-    if texture == WOOD or texture == WOOD_UP:  # the grain runs along u, or along v
+    if WOOD <= texture <= WOOD_UP:  # the grain runs along u, or along v
         if texture == WOOD_UP:
             x, y = y, x
         bend = smooth_noise(x * 0.35, y * 2.0, seed)

@@ -5,35 +5,38 @@ from __future__ import annotations
 import hashlib
 from functools import lru_cache
 
-from sim.appearance import furniture, kitchen, leisure, office, seats_and_beds, household, wear
+from sim.appearance import furniture, household, kitchen, leisure, office, seats_and_beds, wear
 from sim.appearance.shape import Part, Pattern, Shape, ball, box, rod, shape
 
 GROUPS = (seats_and_beds, furniture, kitchen, office, leisure, household, wear)
 SHAPES: dict[str, Shape] = {name: one for group in GROUPS for name, one in group.SHAPES.items()}
 """All shapes by category."""
-SYNONYMS: dict[str, str] = {
-    "couch": "sofa", "loveseat": "sofa", "dining chair": "chair", "arm chair": "armchair", "bar stool": "stool", "footstool": "ottoman",
-    "pouf": "ottoman", "table": "dining table", "kitchen table": "dining table", "nightstand": "side table", "night stand": "side table",
-    "bedside table": "side table", "end table": "side table", "chest of drawers": "dresser", "commode": "dresser", "drawers": "drawer",
-    "bookshelf": "shelf", "bookcase": "shelf", "shelves": "shelf", "cupboard": "cabinet", "wardrobe": "cabinet", "closet": "cabinet",
-    "counter": "countertop", "counter top": "countertop", "kitchen counter": "countertop", "sideboard": "tv stand", "television stand": "tv stand",
-    "refrigerator": "fridge", "stove": "oven", "washer": "washing machine", "trash can": "garbage can", "waste basket": "garbage can",
-    "bin": "garbage can", "dustbin": "garbage can", "standing lamp": "floor lamp", "house plant": "plant", "houseplant": "plant",
-    "potted plant": "plant", "picture": "painting", "television": "tv", "tv monitor": "tv", "tvmonitor": "tv", "monitor": "computer monitor",
-    "table lamp": "desk lamp", "lamp": "desk lamp", "glass": "tumbler", "wine bottle": "bottle", "water bottle": "bottle",
-    "soap bottle": "spray bottle", "coffee cup": "mug", "coffee mug": "mug", "tea cup": "cup", "teacup": "cup", "saucepan": "pot", "frying pan": "pan",
-    "teapot": "kettle", "tea kettle": "kettle", "loaf": "bread", "loaf of bread": "bread", "notebook": "book", "magazine": "newspaper",
-    "computer": "laptop", "notebook computer": "laptop", "mobile phone": "cell phone", "phone": "cell phone", "cellphone": "cell phone", "smartphone": "cell phone",
-    "remote": "remote control", "tv remote": "remote control", "clock": "alarm clock", "wristwatch": "watch", "wrist watch": "watch",
-    "keys": "key chain", "key": "key chain", "keychain": "key chain", "bank card": "credit card", "compact disc": "cd", "dvd": "cd", "ballpoint pen": "pen",
-    "cushion": "pillow", "dish cloth": "cloth", "rag": "cloth", "dishcloth": "cloth", "hand towel": "towel", "bath towel": "towel", "teddy": "teddy bear",
-    "stuffed bear": "teddy bear", "figurine": "statue", "sculpture": "statue", "cardboard box": "box", "carton": "box", "tissues": "tissue box",
-    "box of tissues": "tissue box", "basketball": "basket ball", "ball": "basket ball", "football": "soccer ball", "bat": "baseball bat",
-    "racket": "tennis racket", "racquet": "tennis racket", "boot": "boots", "shoes": "shoe", "sneaker": "shoe", "sneakers": "shoe", "cap": "hat",
-    "rucksack": "backpack", "purse": "wallet", "hand bag": "handbag", "bag": "handbag", "soap": "soap bar", "bar of soap": "soap bar",
-    "toilet roll": "toilet paper", "eyeglasses": "glasses", "spectacles": "glasses", "salt": "salt shaker", "pepper shaker": "salt shaker",
-    "computer keyboard": "keyboard", "computer mouse": "mouse", "banknote": "credit card", "flower": "flowers", "bouquet": "flowers",
+_ALSO_CALLED = {
+    "sofa": "couch, loveseat", "chair": "dining chair", "armchair": "arm chair", "stool": "bar stool",
+    "ottoman": "footstool, pouf", "dining table": "table, kitchen table",
+    "side table": "nightstand, night stand, bedside table, end table", "dresser": "chest of drawers, commode",
+    "drawer": "drawers", "shelf": "bookshelf, bookcase, shelves", "cabinet": "cupboard, wardrobe, closet",
+    "countertop": "counter, counter top, kitchen counter", "tv stand": "sideboard, television stand",
+    "fridge": "refrigerator", "oven": "stove", "washing machine": "washer",
+    "garbage can": "trash can, waste basket, bin, dustbin", "floor lamp": "standing lamp",
+    "plant": "house plant, houseplant, potted plant", "painting": "picture",
+    "tv": "television, tv monitor, tvmonitor", "computer monitor": "monitor", "desk lamp": "table lamp, lamp",
+    "tumbler": "glass", "bottle": "wine bottle, water bottle", "spray bottle": "soap bottle",
+    "mug": "coffee cup, coffee mug", "cup": "tea cup, teacup", "pot": "saucepan", "pan": "frying pan",
+    "kettle": "teapot, tea kettle", "bread": "loaf, loaf of bread", "book": "notebook", "newspaper": "magazine",
+    "laptop": "computer, notebook computer", "cell phone": "mobile phone, phone, cellphone, smartphone",
+    "remote control": "remote, tv remote", "alarm clock": "clock", "watch": "wristwatch, wrist watch",
+    "key chain": "keys, key, keychain", "credit card": "bank card, banknote", "cd": "compact disc, dvd",
+    "pen": "ballpoint pen", "pillow": "cushion", "cloth": "dish cloth, rag, dishcloth",
+    "towel": "hand towel, bath towel", "teddy bear": "teddy, stuffed bear", "statue": "figurine, sculpture",
+    "box": "cardboard box, carton", "tissue box": "tissues, box of tissues", "basket ball": "basketball, ball",
+    "soccer ball": "football", "baseball bat": "bat", "tennis racket": "racket, racquet", "boots": "boot",
+    "shoe": "shoes, sneaker, sneakers", "hat": "cap", "backpack": "rucksack", "wallet": "purse",
+    "handbag": "hand bag, bag", "soap bar": "soap, bar of soap", "toilet paper": "toilet roll",
+    "glasses": "eyeglasses, spectacles", "salt shaker": "salt, pepper shaker", "keyboard": "computer keyboard",
+    "mouse": "computer mouse", "flowers": "flower, bouquet",
 }  # fmt: skip
+SYNONYMS: dict[str, str] = {other: name for name, others in _ALSO_CALLED.items() for other in others.split(", ")}
 """Other names of the same things."""
 
 
@@ -70,5 +73,7 @@ def _made_up(name: str) -> Shape:
     for k, width in enumerate(widths):
         make = (box, rod, ball)[draw[8 + k] % 3] if 0 < k < count - 1 else (box, rod)[draw[8 + k] % 2]
         paint = ("body", "trim")[k % 2]
-        parts.append(make((-width, width), (-width, width), (k / count, (k + 1) / count), paint, pattern if k == 1 else None))
+        parts.append(
+            make((-width, width), (-width, width), (k / count, (k + 1) / count), paint, pattern if k == 1 else None)
+        )
     return shape(tuple(parts), size=(0.2, 0.2, 0.2))

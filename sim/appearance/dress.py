@@ -3,21 +3,37 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.appearance.facing import orientations
 from sim.appearance.catalogue import shape_of
+from sim.appearance.facing import orientations
 from sim.appearance.look import Look, look_of
 from sim.appearance.palette import GLOSS, SLOTS
 from sim.appearance.shape import EVERYWHERE, Part, Pattern, Shape
 from sim.render_parts import CUBE, Parts
 from sim.render_shade import (
-    AMBIENT, DENSITY, DIFFUSE, EDGES, FACES, GLOSS as GLOSS_COLUMN, INK, LAMP, LIGHTS, PAINT, REPEAT_U, REPEAT_V, SEED, TEXTURE,
+    AMBIENT,
+    DENSITY,
+    DIFFUSE,
+    EDGES,
+    FACES,
+    INK,
+    LAMP,
+    LIGHTS,
+    PAINT,
+    REPEAT_U,
+    REPEAT_V,
+    SEED,
+    TEXTURE,
 )  # fmt: skip
+from sim.render_shade import (
+    GLOSS as GLOSS_COLUMN,
+)
 from sim.render_texture import TEXTURES
-from sim.world import World
+from sim.world import Furniture, World, WorldObject
 from zavis_bt.types import FloatArray
 
 _EDGE, _EDGE_SHARE = 0.012, 0.05  # width of dark edges [m], at most this share of the half side
@@ -29,8 +45,8 @@ _FINISH_CELLS = {
     "marble": (6.0, 1.5),
     "speckle": (40.0, 14.0),
 }
-"""Cells of a material's pattern per metre, and at least over the whole thing; those of other patterns are these many:"""
-_FINISH_REPEAT = 5.0
+"""Cells of a material's pattern per metre, and at least over the whole thing."""
+_FINISH_REPEAT = 5.0  # cells of other patterns over the whole thing
 
 
 class Template(NamedTuple):
@@ -61,7 +77,7 @@ def dress(world: World, lamp: FloatArray) -> tuple[Parts, tuple[Look, ...]]:
         world: What there is.
         lamp: Columns of the room's look.
     """
-    things = (*world.furniture, *world.objects)
+    things: tuple[Furniture | WorldObject, ...] = (*world.furniture, *world.objects)
     boxes = _boxes(world)
     shapes = [shape_of(thing.category) for thing in things]
     turns = orientations(world, boxes, shapes)
@@ -98,7 +114,7 @@ def _stack(arrays: list[FloatArray], columns: int) -> FloatArray:
 
 
 @lru_cache(maxsize=512)
-def template(shape: "_Key") -> Template:
+def template(shape: _Key) -> Template:
     """Return a variant of a shape as arrays."""
     parts = shape.parts
     turns, leans = np.zeros((len(parts), 3, 3)), np.tile(np.eye(3), (len(parts), 1, 1))
@@ -236,7 +252,7 @@ def _spheres(frames: FloatArray, first: np.ndarray) -> FloatArray:
     """Return (n, 4) middle and radius of a ball around the parts of each thing."""
     spheres = np.zeros((len(first) - 1, 4))
     reach = np.abs(frames[:, 3:].reshape(-1, 3, 3)).sum(axis=1)
-    for thing, (begin, end) in enumerate(zip(first[:-1], first[1:], strict=True)):
+    for thing, (begin, end) in enumerate(pairwise(first)):
         low = (frames[begin:end, :3] - reach[begin:end]).min(axis=0)
         high = (frames[begin:end, :3] + reach[begin:end]).max(axis=0)
         spheres[thing, :3], spheres[thing, 3] = (low + high) / 2, np.linalg.norm(high - low) / 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -47,11 +48,13 @@ class CameraEffects:
 
     def apply(self, rgb: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
         """Return the image (h, w, 3) as the camera takes it."""
-        image = rgb.astype(np.float32)
+        image: NDArray[np.floating[Any]] = rgb.astype(np.float32)
         if self.motion > 1:
-            image = cv2.filter2D(image, -1, _streak(self.motion, self.motion_angle), borderType=cv2.BORDER_REPLICATE)
+            streak = _streak(self.motion, self.motion_angle)
+            image = np.asarray(cv2.filter2D(image, -1, streak, borderType=cv2.BORDER_REPLICATE), dtype=np.float32)
         if self.defocus > 0:
-            image = cv2.GaussianBlur(image, (0, 0), self.defocus, borderType=cv2.BORDER_REPLICATE)
+            blurred = cv2.GaussianBlur(image, (0, 0), self.defocus, borderType=cv2.BORDER_REPLICATE)
+            image = np.asarray(blurred, dtype=np.float32)
         image = image * np.float32(self.exposure)
         if self.vignette > 0:
             image = image * _fall_off(image.shape[0], image.shape[1], self.vignette)

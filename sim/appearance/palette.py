@@ -43,7 +43,8 @@ SHADES: dict[str, tuple[tuple[int, int, int], str]] = {
 """Further names of colours, as (r, g, b) and the basic colour they belong to."""
 
 SLOTS = (
-    "body", "trim", "accent", "dark", "metal", "wood", "glass", "paper", "screen", "glow", "light", "leaf", "ink", "fabric",
+    "body", "trim", "accent", "dark", "metal", "wood", "glass", "paper", "screen", "glow", "light", "leaf", "ink",
+    "fabric",
 )  # fmt: skip
 """What a part may be made of. The body's colour is the thing's; trim and accent go with it."""
 MATERIALS: dict[str, tuple[str, ...]] = {

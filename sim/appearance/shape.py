@@ -1,7 +1,7 @@
 """What shapes are made of: the words the tables of the catalogue are written in.
 
-A shape fills a box: x and y run from -1 to 1, z from 0 (where it stands) to 1 (its top). The front is at y = -1, and x is
-the longer side of what has one. Every part lies between two values on each axis.
+A shape fills a box: x and y run from -1 to 1, z from 0 (where it stands) to 1 (its top). The front is at y = -1, and x
+is the longer side of what has one. Every part lies between two values on each axis.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Part:
     hole: float = 0.0
     """Radius of the hole of a tube, a share of its own."""
     lean: tuple[Axis, Axis, float] | None = None
-    """Shear: (which coordinate moves, along which axis, by how much at the high end; as much the other way at the low)."""
+    """Shear: which coordinate moves, along which axis, by how much at the high end (as much back at the low one)."""
     gloss: float | None = None
     """0 to 1; None is that of its slot."""
 
@@ -83,7 +83,7 @@ def tube(
 
 def mirrored(part: Part, *axes: Literal["x", "y"]) -> tuple[Part, ...]:
     """Return the part and its images on the other sides of the given planes."""
-    parts = (part,)
+    parts: tuple[Part, ...] = (part,)
     for axis in axes:
         parts += tuple(_mirror(one, axis) for one in parts)
     return parts
@@ -100,7 +100,9 @@ def _mirror(part: Part, axis: Literal["x", "y"]) -> Part:
     return replace(moved, x=(-high, -low)) if axis == "x" else replace(moved, y=(-high, -low))
 
 
-def legs(top: float, width: float = 0.1, depth: float = 0.1, paint: str = "body", inset: float = 0.0) -> tuple[Part, ...]:
+def legs(
+    top: float, width: float = 0.1, depth: float = 0.1, paint: str = "body", inset: float = 0.0
+) -> tuple[Part, ...]:
     """Return four straight legs from the floor to ``top``."""
     edge = 1.0 - inset
     return mirrored(box((edge - width, edge), (edge - depth, edge), (0.0, top), paint), "x", "y")

@@ -31,7 +31,7 @@ def test_views_show_things_and_their_labels():
     assert np.mean([len(frame.labels) for frame in seen]) > 2
     for frame in seen:
         for label in frame.labels:
-            pixels = np.argwhere(frame.surfaces == label.index)
+            pixels = np.argwhere(frame.surfaces == label.number)
             assert label.pixels == len(pixels)
             assert (label.box.y0, label.box.x0) == tuple(pixels.min(axis=0))
             assert (label.box.y1, label.box.x1) == tuple(pixels.max(axis=0) + 1)
