@@ -49,7 +49,7 @@ def portrait(category: str, pixels: int = 96, number: int = 0, colour: str | Non
     return np.asarray(cv2.resize(frame.rgb, (pixels, pixels), interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
-def contact_sheet(categories: Sequence[str], pixels: int = 96, looks: int = 3, columns: int = 4) -> NDArray[np.uint8]:
+def contact_sheet(categories: Sequence[str], pixels: int = 56, looks: int = 2, columns: int = 8) -> NDArray[np.uint8]:
     """Return a picture with some looks of each category beside one another, and their names."""
     cells = []
     for category in categories:
@@ -80,7 +80,7 @@ def main(arguments: Sequence[str]) -> None:
     if not arguments:
         sys.exit("usage: python -m sim.appearance.contact_sheet FILE.png [CATEGORY …]")
     sheet = contact_sheet(list(arguments[1:]) or sorted(SHAPES))
-    cv2.imwrite(arguments[0], sheet[..., ::-1])
+    cv2.imwrite(arguments[0], sheet[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.appearance import SHAPES, SYNONYMS, shape_of
-from sim.appearance.contact_sheet import portrait
+from sim.appearance.contact_sheet import contact_sheet, portrait
 from sim.appearance.palette import SLOTS, rgb_of
 from sim.render_paint import COLOURS
 from sim.render_texture import TEXTURES
@@ -161,3 +161,8 @@ def test_a_named_colour_is_the_hue_one_sees(colour):
             away = abs((hue - expected + 0.5) % 1.0 - 0.5)
             assert away < 0.06, (category, number)
             assert saturation > 0.15, (category, number)
+
+
+def test_a_contact_sheet_has_a_cell_for_each_category():
+    sheet = contact_sheet(["mug", "desk", "book"], pixels=24, looks=2, columns=2)
+    assert sheet.shape == (2 * (24 + 16 + 4), 2 * (2 * 24 + 8), 3)
