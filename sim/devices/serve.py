@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from sim.devices.plant import Plant
-from sim.devices.robot_file import write_robot
+from sim.devices.robot_file import write_robot_file
 from zavis_bt.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -29,6 +29,11 @@ class _Server(Protocol):
 
     def start(self) -> None: ...
     def close(self) -> None: ...
+
+
+def _reached_at(host: str) -> str:
+    """Return where a program on this computer reaches what listens at ``host``."""
+    return "127.0.0.1" if host in ("", "0.0.0.0") else host
 
 
 def _own_channel() -> str:
@@ -148,6 +153,13 @@ class SimulatedDevices:
         self._servers[kind] = self._makers[kind](self._servers[kind].port)
         self._servers[kind].start()
 
+    def clients(self) -> dict[str, int]:
+        """Return how many programs are connected to each line, as far as the line can tell."""
+        from sim.devices.arcos import Phase
+
+        connected = self.base.firmware.phase is Phase.CLOSE
+        return {"base": int(connected), "lidar": self.lidar.clients, "camera": self.camera.clients}
+
     def settings(self) -> dict[str, dict[str, Any]]:
         """Return the devices of a robot file that fits, by kind: ``driver`` and ``settings``."""
 
@@ -155,7 +167,7 @@ class SimulatedDevices:
             return {"driver": driver, "settings": settings}
 
         def port(kind: str) -> str:
-            return f"tcp://{self.places.host}:{self._servers[kind].port}"
+            return f"tcp://{_reached_at(self.places.host)}:{self._servers[kind].port}"
 
         return {
             "base": device("pioneer", port=port("base")),
@@ -181,7 +193,7 @@ class SimulatedDevices:
         for kind, further in (settings or {}).items():
             devices[kind]["settings"] |= further
         path = folder / "simulated.robot.yaml"
-        write_robot(path, self.plant.spec, devices)
+        write_robot_file(path, self.plant.spec, devices)
         return path
 
     def close(self) -> None:
@@ -203,12 +215,30 @@ class SimulatedDevices:
     def _start_pan_tilt(self) -> None:
         import can
 
+        place = f"CAN bus {self.places.can_interface} {self.places.can_channel}"
         try:
-            self.pan_tilt.start()
+            taken = self._roll_call()
+            if not taken:
+                self.pan_tilt.start()
         except (can.CanError, OSError, ImportError, ValueError) as error:  # whatever the bus is made of
-            place = f"CAN bus {self.places.can_interface}:{self.places.can_channel}"
             why = " ".join(str(error).split()) or type(error).__name__
             raise DeviceError(f"{place}: cannot be opened: {why} (is it up? choose another with --can)") from error
+        if taken:
+            raise DeviceError(
+                f"{place}: node {taken[0]} is there already (end the other simulator, or choose another bus with --can)"
+            )
+
+    def _roll_call(self) -> list[int]:
+        """Return which of our node numbers others have on a bus that is shared with other programs."""
+        import can
+
+        from sim.devices.can_roll_call import nodes_present
+
+        if self.places.can_interface == "virtual":
+            return []
+        options: dict[str, Any] = {"fd": False, "hop_limit": 0} if self.places.can_interface == "udp_multicast" else {}
+        with can.Bus(interface=self.places.can_interface, channel=self.places.can_channel, **options) as bus:
+            return nodes_present(bus, self.pan_tilt.nodes.values())
 
 
 def _makers(plant: Plant, host: str, firmware: Any) -> Mapping[str, Callable[[int], _Server]]:

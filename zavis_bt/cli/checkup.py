@@ -14,7 +14,7 @@ from zavis_bt.errors import ZavisError
 from zavis_bt.mission.device_robot import open_device
 from zavis_bt.mission.robot_file import RobotFile
 from zavis_bt.protocols import Base, Camera, Clock, Device, Lidar, PanTilt
-from zavis_bt.types import DeviceReport, LaserScan, RgbdFrame, RobotSpec
+from zavis_bt.types import LaserScan, RgbdFrame, RobotSpec
 
 _POLL = 0.004  # between two looks at a device [s]
 _SLOW = 0.8  # share of the rate in the robot file below which a sensor is too slow
@@ -96,17 +96,14 @@ def examine(
     try:
         opened = f"{time.monotonic() - begin:.2f} s"
         watch = _watch(_READERS[kind](device), clock, seconds, progress)
-        problems = list(_problems(kind, device, watch, file.spec, seconds))
         report = device.report()
+        # its driver knows best; what can be seen from outside is said if the driver has nothing to say
+        problems = report.problems or tuple(_problems(kind, device, watch, file.spec, seconds))
     finally:
         device.close()
-    return _finding(kind, driver, report, {"opened in": opened, **watch.figures()}, problems)
-
-
-def _finding(kind: str, driver: str, report: DeviceReport, figures: Mapping[str, str], problems: list[str]) -> Finding:
-    everything = {**figures, **report.figures}
-    together = tuple(dict.fromkeys((*report.problems, *problems)))
-    return Finding(kind, driver, report.model, report.firmware, report.serial, everything, together)
+    figures = {"opened in": opened, **watch.figures(), **report.figures}
+    told = tuple(_without_place(problem, file, kind) for problem in problems)
+    return Finding(kind, driver, report.model, report.firmware, report.serial, figures, told)
 
 
 def _without_place(message: str, file: RobotFile, kind: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from zavis_bt.cli.checkup import Finding
-    from zavis_bt.cli.computer import Computer
     from zavis_bt.mission import RobotFile
 
 _QUESTION = (
@@ -48,8 +47,9 @@ def doctor(
     if move:
         _ask()
     console = Console(highlight=False, quiet=as_json)
-    computer = look_at_computer(file)
-    _print_computer(computer, console)
+    computer = look_at_computer()
+    console.print("[bold]computer[/]")
+    _print_figures(computer.items(), console)
     findings: list[Finding] = []
     with signals_end():
         for kind in kinds:
@@ -61,8 +61,8 @@ def doctor(
             findings = _moved(file, findings, console)
     if as_json:
         print(json.dumps(_as_data(robot, computer, findings)))
-    _print_summary(findings, computer, console)
-    if not (computer.ok and all(finding.ok for finding in findings)):
+    _print_summary(findings, console)
+    if not all(finding.ok for finding in findings):
         raise typer.Exit(1)
 
 
@@ -154,22 +154,17 @@ def _progress(kind: str, console: Console) -> Iterator[Callable[[float], None]]:
         yield lambda share: bar.update(task, completed=share, doing="watching …")
 
 
-def _print_computer(computer: Computer, console: Console) -> None:
-    console.print("[bold]computer[/]")
-    _print_figures(computer.figures.items(), console)
-    _print_end(computer.problems, console)
-
-
 def _print_finding(finding: Finding, console: Console) -> None:
     plate = [finding.model, finding.firmware and f"firmware {finding.firmware}"]
     plate.append(finding.serial and f"serial number {finding.serial}")
     name = ", ".join(part for part in plate if part)
     console.print(f"\n[bold]{finding.kind}[/]  [dim]driver {finding.driver or '-'}[/]  {_escaped(name)}")
     _print_figures(finding.figures.items(), console)
-    _print_end(finding.problems, console)
+    for line in _marks(finding.problems) or ["  [bold green]✓[/] well"]:
+        console.print(line, soft_wrap=True)
 
 
-def _print_figures(figures: Any, console: Console) -> None:
+def _print_figures(figures: Iterable[tuple[str, str]], console: Console) -> None:
     from rich.table import Table
 
     table = Table.grid(padding=(0, 2))
@@ -178,24 +173,19 @@ def _print_figures(figures: Any, console: Console) -> None:
     console.print(table)
 
 
-def _print_end(problems: Sequence[str], console: Console) -> None:
-    for line in _marks(problems) or ["  [bold green]✓[/] well"]:
-        console.print(line, soft_wrap=True)
-
-
 def _marks(problems: Sequence[str]) -> list[str]:
     return [f"  [bold red]✗[/] {_escaped(problem)}" for problem in problems]
 
 
-def _print_summary(findings: Sequence[Finding], computer: Computer, console: Console) -> None:
-    ill = [*([] if computer.ok else ["computer"]), *(finding.kind for finding in findings if not finding.ok)]
+def _print_summary(findings: Sequence[Finding], console: Console) -> None:
+    ill = [finding.kind for finding in findings if not finding.ok]
     if ill:
         console.print(f"\n[bold red]not well[/]: {', '.join(ill)}")
     elif findings:
-        count = len(findings)
-        console.print(f"\n[bold green]all well[/]: {count} device{'s' * (count != 1)} and the computer")
+        console.print(f"\n[bold green]all well[/]: {', '.join(finding.kind for finding in findings)}")
     else:
-        console.print("\nto check a robot's devices: zavis doctor --robot FILE  (e.g. --robot pioneer3at_sim)")
+        hint = "to check a robot's devices: zavis doctor --robot FILE  (e.g. --robot pioneer3at_sim)"
+        console.print(f"\n{hint}", soft_wrap=True)
 
 
 def _escaped(text: str) -> str:
@@ -204,10 +194,10 @@ def _escaped(text: str) -> str:
     return escape(text)
 
 
-def _as_data(robot: str | None, computer: Computer, findings: Sequence[Finding]) -> dict[str, Any]:
+def _as_data(robot: str | None, computer: Mapping[str, str], findings: Sequence[Finding]) -> dict[str, Any]:
     return {
         "robot": robot,
-        "ok": computer.ok and all(finding.ok for finding in findings),
-        "computer": {"ok": computer.ok, "figures": dict(computer.figures), "problems": computer.problems},
+        "ok": all(finding.ok for finding in findings),
+        "computer": computer,
         "devices": {finding.kind: {"ok": finding.ok, **asdict(finding)} for finding in findings},
     }

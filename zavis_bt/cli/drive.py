@@ -81,7 +81,7 @@ class Drive:
         from zavis_bt.mission import MissionJournal, SafeRobot
 
         self.teleop, self.looks = teleop, looks
-        self.robot: SafeRobot = SafeRobot(robot, safety, MissionJournal(clock))
+        self.robot: SafeRobot = SafeRobot(robot, safety, MissionJournal(clock), _PERIOD)
         self.problem = ""
         """Why the latest command could not be given."""
         self.wanted: Twist2D | None = None

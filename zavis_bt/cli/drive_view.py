@@ -92,14 +92,14 @@ def nearest(scan: LaserScan | None) -> str:
 
 def _faults(drive: Drive) -> list[str]:
     state = drive.robot.base.latest
-    found = [drive.problem, state.fault]
+    found = [drive.problem, state.fault or drive.robot.base.trouble]
     found += ["the emergency stop is pressed"] * state.estop
     found += ["a bumper is pressed: only slowly back"] * state.bumper
     found += ["a wheel is held fast: only slowly back"] * state.stalled
     if drive.silent_for > _STALE:
         found.append(f"the base has not been heard of for {drive.silent_for:.0f} s")
     if drive.looks:
-        found.append(drive.robot.pan_tilt.state().fault)
+        found.append(drive.robot.pan_tilt.state().fault or drive.robot.pan_tilt.trouble)
     return list(dict.fromkeys(fault for fault in found if fault))
 
 

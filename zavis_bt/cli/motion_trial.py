@@ -59,7 +59,7 @@ class BaseTrial:
         journal = MissionJournal(clock)
         self._held_back: list[str] = []
         journal.sinks.append(lambda event: self._held_back.append(str(event.data.get("reason", event.kind))))
-        self._base = SafeRobot(robot, safety, journal).base
+        self._base = SafeRobot(robot, safety, journal, _PERIOD).base
         self._clock = clock
 
     def run(self) -> list[str]:
