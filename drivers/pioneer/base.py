@@ -25,7 +25,8 @@ from zavis_bt.protocols import DeviceContext
 from zavis_bt.types import BaseState, DeviceReport, Pose2D, Twist2D
 
 _POLL = 0.05  # [s]
-_FIRST_SIP = 2.0  # [s]
+_FIRST_SIP = 2.0  # after connecting [s]
+_SWITCH_ON = 3.0  # the motors are on or have failed so soon after the first SIP [s]
 _SHORTEST_PAUSE, _LONGEST_PAUSE = 0.2, 2.0  # between attempts to reconnect [s]
 _REST_WITHIN = 1.0  # [s]
 _AT_REST = 0.01  # [m/s, rad/s]
@@ -59,7 +60,8 @@ class PioneerBase:
         self._listener = threading.Thread(target=self._run, name="pioneer listener", daemon=True)
         atexit.register(self.close)
         self._listener.start()
-        if not self._ready.wait(_FIRST_SIP + _POLL) or self._health.packets == 0:
+        self._ready.wait(_FIRST_SIP + _SWITCH_ON)
+        if self._health.packets == 0:
             self.close()
             raise self._failure or DeviceError(f"{self._place}: connected, but tells nothing")
 
@@ -82,6 +84,7 @@ class PioneerBase:
 
         Raises:
             DeviceError: The link is lost.
+            ValueError: It is not a velocity: not finite.
         """
         if not self._cadence.set(*self._connection.bounds.units(twist)):
             raise DeviceError(self._state.fault or f"{self._place}: is not connected")
@@ -195,6 +198,7 @@ class PioneerBase:
         """Say that the link is lost, and why."""
         self._failure = error
         self._state = replace(self._state, fault=f"{error}; reconnecting")
+        self._ready.set()
 
     def _reconnect(self) -> Connection | None:
         """Return a new connection, after as many attempts as it takes; None if the driver is closed meanwhile."""
