@@ -6,7 +6,7 @@ from enum import Enum, auto
 
 from zavis_bt.planning import FollowStatus, Navigator, PathFollower, PlanningError
 from zavis_bt.protocols import Job, Jobs, Journal, Robot
-from zavis_bt.types import Path, Pose2D
+from zavis_bt.types import Path, Pose2D, Twist2D
 
 
 class DriveStatus(Enum):
@@ -82,10 +82,10 @@ class Drive:
         return self._replan(progress.status)
 
     def cancel(self) -> None:
-        """Stop planning and driving."""
+        """Stop planning, and slow down to rest."""
         self._plan.cancel()
         self._journal.record("path", path=None)
-        self._robot.base.stop()
+        self._robot.base.command(Twist2D())
 
     def _submit(self) -> Job[Path]:
         return self._jobs.submit("plan", self._navigator.plan, self._robot.base.state().pose, self._goal)

@@ -11,6 +11,7 @@ import numpy as np
 
 from zavis_bt.mapping import Mapper, SemanticMap
 from zavis_bt.mission.dialogue import Dialogue
+from zavis_bt.mission.health import Health
 from zavis_bt.mission.journal import MissionJournal
 from zavis_bt.mission.parts import Parts, Task
 from zavis_bt.mission.safety import SafeRobot
@@ -73,7 +74,8 @@ class Mission:
         self._parts, self._search, self._task, self._tree = parts, search, task, tree
         self._observers: list[Observer] = []
         self.journal = MissionJournal(parts.clock)
-        self._robot = SafeRobot(parts.robot, self._settings.safety, self.journal)
+        self._robot = SafeRobot(parts.robot, self._settings.safety, self.journal, 1 / self._settings.rate)
+        self._health = Health(self._robot, self._settings.safety, self.journal)
         self._mapper = Mapper(parts.robot.spec, self._settings.resolution)
         self._trajectory: list[tuple[float, float]] = []
         self._last_base: BaseState | None = None
@@ -109,13 +111,19 @@ class Mission:
             before=[self._sense],
             after=[self._drive, self._check_budget, self._show],
             on_exit=[self._robot.halt],
+            hold=lambda: not self._health.well,
             on_pause=self._robot.halt,
+            on_resume=self._robot.resume,
         )
 
     # -- the tick ------------------------------------------------------------------------------------------------
 
     def _sense(self) -> None:
         self._robot.base.read()
+        if self._health.check(self._parts.clock.now()):
+            self._map()
+
+    def _map(self) -> None:
         state, scan = self._robot.base.latest, self._robot.base.scan
         self._mapper.update(scan, state.pose if scan is None else self._robot.base.pose_at(scan.stamp))
         if self._last_base is not None:
@@ -129,7 +137,9 @@ class Mission:
         self._robot.base.flush(self._parts.clock.now())
 
     def _check_budget(self) -> None:
-        if self.path_length > self._settings.max_travel:
+        if given_up := self._health.given_up(self._parts.clock.now()):
+            self.runner.stop(given_up)
+        elif self.path_length > self._settings.max_travel:
             self.runner.stop(f"not found within {self._settings.max_travel:g} m of travel")
         elif self._parts.clock.now() - self._started > self._settings.max_seconds:
             self.runner.stop(f"not found within {self._settings.max_seconds:g} s")

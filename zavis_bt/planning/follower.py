@@ -22,6 +22,7 @@ _TURN_EXACTLY = math.radians(4), math.radians(1)  # the same where the passage i
 _SETTLED = 0.06  # turning slower than this the base may drive into a narrow passage [rad/s]
 _PATH_AHEAD = 1.1  # so much of the path counts for how far motions are off it [m]
 _LAG = 0.3  # a base that gets to the commanded velocity within this time follows it [s]
+_PAUSE = 1.0  # without an update for so long the robot was held, and has not stood still by itself [s]
 _IDLE = 0.02  # motions slower than this lead nowhere [m/s], [rad/s]
 _AT_END = 0.03  # the end of the path counts as reached from here [m]
 
@@ -121,6 +122,8 @@ class PathFollower:
         if last is None:
             return _PERIOD
         self._driven += state.pose.distance(last.pose)
+        if state.stamp - last.stamp > _PAUSE:
+            self._watch, self._blocked_since, self._command = StallWatch(), None, Twist2D()
         return min(max(state.stamp - last.stamp, 0.02), 0.3)
 
     def _arrived(self, pose: Pose2D) -> bool:
