@@ -109,7 +109,7 @@ class Unit:
         end = time.monotonic() + _REST
         while time.monotonic() < end:
             self.idle(self.pace.period)
-            if all(self._silent(axis) or abs(axis.velocity / axis.units) < _AT_REST for axis in self.axes):
+            if not any(self._moves(axis) for axis in self.axes):
                 return
 
     def idle(self, seconds: float) -> None:
@@ -183,6 +183,10 @@ class Unit:
         if state is not State.ENABLED:
             return f"{axis} is in '{state.text if state else 'no known state'}' (has somebody else switched it off?)"
         return ""
+
+    def _moves(self, axis: Axis) -> bool:
+        known = not (axis.restarted or self._silent(axis)) and axis.operational
+        return known and abs(axis.velocity / axis.units) > _AT_REST
 
     def _silent(self, axis: Axis) -> bool:
         settings, now = self._settings, time.monotonic()
