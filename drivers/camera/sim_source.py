@@ -112,9 +112,9 @@ class SimSource:
         until = time.monotonic() + _ANSWER
         while time.monotonic() < until:
             for message in line.receive(0.1):
+                self._refuse_faults(message)
                 if message.kind == Kind.IDENTITY:
                     return self._read(Identity, message)
-                self._refuse(message)
         raise DeviceError(f"{self._where}: answers, but not as the simulator's camera does (is the port right?)")
 
     def _ask(self, line: _Line) -> None:
@@ -128,10 +128,10 @@ class SimSource:
         line.send(header_message(Kind.NEXT, request))
 
     def _frame(self, message: Message) -> Capture | None:
+        self._refuse_faults(message)
         if message.kind == Kind.NOTHING_NEW:
             self._hear(self._read(NothingNew, message).now)
             return None
-        self._refuse(message)
         try:
             frame = read_frame(message)
         except WireError as error:
@@ -153,13 +153,13 @@ class SimSource:
         except WireError as error:
             raise DeviceError(f"{self._where}: {error}") from None
 
-    def _refuse(self, message: Message) -> None:
+    def _refuse_faults(self, message: Message) -> None:
         if message.version != VERSION:
             spoken = f"speaks version {message.version} of the camera protocol, this driver version {VERSION}"
             raise DeviceError(f"{self._where}: {spoken} (install the same release on both sides)")
         if message.kind == Kind.ERROR:
             raise DeviceError(f"{self._where}: {self._read(Failure, message).message}")
-        if message.kind not in (Kind.FRAME, Kind.IDENTITY):
+        if message.kind not in (Kind.FRAME, Kind.NOTHING_NEW, Kind.IDENTITY):
             raise DeviceError(f"{self._where}: sends a message of the unknown kind {message.kind}")
 
     def _read(self, model: type[HeaderT], message: Message) -> HeaderT:
