@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +29,7 @@ class Sweep:
     """One turn's measurement."""
 
     time: float
-    """When, by ``time.monotonic`` [s]."""
+    """When, by the clock [s]."""
     ranges: Numbers
     """(n,) of all steps [mm], or codes."""
 
@@ -36,8 +37,15 @@ class Sweep:
 class Eye:
     """Measures the plant's world; the same sweep for whoever asks within a turn."""
 
-    def __init__(self, plant: Plant, parameters: Parameters) -> None:
-        self._plant, self._parameters = plant, parameters
+    def __init__(self, plant: Plant, parameters: Parameters, clock: Callable[[], float] = time.monotonic) -> None:
+        """Look through the LiDAR of a robot.
+
+        Args:
+            plant: The robot.
+            parameters: Of the sensor.
+            clock: Real time [s].
+        """
+        self._plant, self._parameters, self._clock = plant, parameters, clock
         self._step = (0.0, -math.inf)  # the plant's time when it was last seen to step, and when that was
         self._last: tuple[int, Sweep] | None = None
         plant.controllers.append(self._note)
@@ -68,14 +76,14 @@ class Eye:
     def _time_of(self, plant_time: float) -> float:
         """Return when the plant was where it is at ``plant_time`` [s]: it is due at a step's end, not when asked."""
         seen, at = self._step
-        now = time.monotonic()
+        now = self._clock()
         if now - at > _STALE:
             return now
         return min(at + plant_time - seen, now)
 
     def _note(self, now: float) -> None:
         """Note that the plant is at ``now`` [s], and will next be one step further: that is due this moment."""
-        self._step = now + 1 / STEPS_PER_SECOND, time.monotonic()
+        self._step = now + 1 / STEPS_PER_SECOND, self._clock()
 
 
 def chosen(sweep: Sweep, request: ScanRequest, first_step: int) -> Numbers:
