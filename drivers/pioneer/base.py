@@ -11,7 +11,16 @@ from typing import Any
 
 from drivers.history import PoseHistory
 from drivers.pioneer.cadence import Cadence
-from drivers.pioneer.codec import CommandNumber, PacketError, Sip, decode_sip, encode_command, is_sip
+from drivers.pioneer.codec import (
+    CommandNumber,
+    PacketError,
+    PacketType,
+    Sip,
+    decode_encoders,
+    decode_sip,
+    encode_command,
+    is_sip,
+)
 from drivers.pioneer.connection import EMERGENCY_STOP, Connection, connect, say_farewell
 from drivers.pioneer.health import Health
 from drivers.pioneer.models import charge_share
@@ -154,6 +163,8 @@ class PioneerBase:
             for payload in connection.line.read(_POLL):
                 if is_sip(payload) and self._take(payload, connection):
                     heard, patience = time.monotonic(), self._settings.silence
+                elif payload[0] == PacketType.ENCODER:
+                    self._take_encoders(payload, connection)
             if self._cadence.failure is not None:
                 raise self._cadence.failure
             if time.monotonic() - heard > patience:
@@ -177,10 +188,21 @@ class PioneerBase:
         self._publish(sip, pose, twist, stamp)
         return True
 
+    def _take_encoders(self, payload: bytes, connection: Connection) -> None:
+        try:
+            encoders = decode_encoders(payload)
+        except PacketError:
+            self._health.malformed += 1
+            return
+        if connection.ticks_per_mm:
+            stamp = self._context.clock.now()
+            self._odometry.bridge(encoders, stamp, connection.parameters, connection.ticks_per_mm)
+
     def _publish(self, sip: Sip, pose: Pose2D, twist: Twist2D, stamp: float) -> None:
-        """Make this the latest state; the fault of a lost link stays until the motors are on again, or known not to."""
+        """Make this the latest state; the fault of a lost link stays until motors and pose are settled."""
         self._health.voltage = voltage = (sip.battery_x10 or sip.battery) / 10
         motors = self._motors
+        settled = motors.settled and self._odometry.settled
         self._state = BaseState(
             pose=pose,
             twist=twist,
@@ -189,9 +211,9 @@ class PioneerBase:
             bumper=bool(sip.front_bumpers or sip.rear_bumpers),
             stalled=sip.left_stalled or sip.right_stalled,
             estop=motors.stop_pressed,
-            fault=motors.fault if motors.settled else self._state.fault,
+            fault=motors.fault if settled else self._state.fault,
         )
-        if motors.settled:
+        if settled:
             self._ready.set()
 
     def _lose(self, error: DeviceError) -> None:
