@@ -59,7 +59,7 @@ def decode_pixels(
     shape = intrinsics.height, intrinsics.width
     colours = _decoded(rgb, (*shape, 3), np.dtype(np.uint8))
     millimetres = _decoded(depth, shape, np.dtype("<u2"))
-    return colours, millimetres.astype(np.float32) * np.float32(0.001)
+    return colours, millimetres.astype(np.float32) / np.float32(1000)
 
 
 def _decoded(image: WireImage, shape: Sequence[int], dtype: np.dtype[Any]) -> NDArray[Any]:

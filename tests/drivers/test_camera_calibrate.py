@@ -37,10 +37,10 @@ def cameras():
 
 @pytest.fixture(scope="module")
 def seen(cameras):
-    """Images of both cameras of twelve boards."""
+    """Images of both cameras of nine boards."""
     return [
         [camera.see(*pose, noise=2 * number + side) for side, camera in enumerate(cameras)]
-        for number, pose in enumerate(poses(12))
+        for number, pose in enumerate(poses(9))
     ]
 
 

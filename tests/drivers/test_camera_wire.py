@@ -1,7 +1,10 @@
 from __future__ import annotations
 
 import contextlib
+import json
+import re
 import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -212,3 +215,17 @@ def test_a_request_says_what_is_wanted_and_nothing_else():
         read_header(NextRequest, Message(Kind.NEXT, {"colour": True}))
     with pytest.raises(WireError, match="wait"):
         read_header(NextRequest, Message(Kind.NEXT, {"wait": 1e9}))
+
+
+def test_the_documented_example_is_what_is_sent():
+    text = (Path(__file__).parents[2] / "docs" / "camera_protocol.md").read_text()
+    example = text[text.index("## Example") :]
+    blocks = re.findall(r"^```(json)?\n(.*?)^```$", example, re.MULTILINE | re.DOTALL)
+    hexadecimal = [re.findall(r"^(?:[0-9a-f]{2} ?)+", block, re.MULTILINE) for kind, block in blocks if not kind]
+    found = [message for lines in hexadecimal for message in Decoder().feed(bytes.fromhex("".join(lines)))]
+    assert [message.kind for message in found] == [Kind.IDENTIFY, Kind.NEXT, Kind.NOTHING_NEW, Kind.FRAME]
+    assert [json.loads(block) for kind, block in blocks if kind] == [found[-1].header]
+    last = read_frame(found[-1])
+    rgb, depth = decode_pixels(last.rgb, last.depth, last.intrinsics)
+    assert rgb.tolist() == [[[255, 0, 0], [0, 0, 255]]]
+    assert depth.tolist() == [[1.5, 0.0]]
