@@ -55,6 +55,9 @@ class Places:
     """Kind of CAN bus, as python-can calls it."""
     can_channel: str = field(default_factory=_own_channel)
     """Its channel: a group for ``udp_multicast``, any name for ``virtual``."""
+    can_options: Mapping[str, Any] = field(default_factory=dict)
+    """Further arguments for python-can. Groups of ``udp_multicast`` on one computer hear one another unless their
+    ``port`` differs."""
 
 
 class SimulatedDevices:
@@ -99,7 +102,7 @@ class SimulatedDevices:
         self.plant = Plant(world, spec, start, seed, noise)
         firmware = Firmware(self.plant, P3DX if spec.name.startswith(_P3DX) else P3AT, watchdog=watchdog)
         self._makers = _makers(self.plant, at.host, firmware)
-        self.pan_tilt = Cia402Drives(self.plant, interface=at.can_interface, channel=at.can_channel)
+        self.pan_tilt = Cia402Drives(self.plant, interface=at.can_interface, channel=at.can_channel, **at.can_options)
         self.serial = ArcosPty(self.plant, firmware=firmware) if serial else None
         self._servers: dict[str, _Server] = {}
         try:
@@ -169,9 +172,12 @@ class SimulatedDevices:
         def port(kind: str) -> str:
             return f"tcp://{_reached_at(self.places.host)}:{self._servers[kind].port}"
 
+        bus: dict[str, Any] = {"interface": self.places.can_interface, "channel": self.places.can_channel}
+        if self.places.can_options:
+            bus["options"] = dict(self.places.can_options)
         return {
             "base": device("pioneer", port=port("base")),
-            "pan_tilt": device("cia402", interface=self.places.can_interface, channel=self.places.can_channel),
+            "pan_tilt": device("cia402", **bus),
             "lidar": device("scip", port=port("lidar")),
             "camera": device("sim", port=port("camera")),
         }
@@ -236,8 +242,10 @@ class SimulatedDevices:
 
         if self.places.can_interface == "virtual":
             return []
-        options: dict[str, Any] = {"fd": False, "hop_limit": 0} if self.places.can_interface == "udp_multicast" else {}
-        with can.Bus(interface=self.places.can_interface, channel=self.places.can_channel, **options) as bus:
+        places = self.places
+        options: dict[str, Any] = {"fd": False, "hop_limit": 0} if places.can_interface == "udp_multicast" else {}
+        options |= places.can_options
+        with can.Bus(interface=places.can_interface, channel=places.can_channel, **options) as bus:
             return nodes_present(bus, self.pan_tilt.nodes.values())
 
 

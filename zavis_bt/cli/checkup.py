@@ -18,6 +18,8 @@ from zavis_bt.types import LaserScan, RgbdFrame, RobotSpec
 
 _POLL = 0.004  # between two looks at a device [s]
 _SLOW = 0.8  # share of the rate in the robot file below which a sensor is too slow
+_ENOUGH = 5  # measurements to judge a rate by
+_USUAL_RATE = 10.0  # of devices for which the robot file has none [Hz]
 _LOW_BATTERY = 0.2
 _PATIENCE = 3.0  # so long a device may take to say its first word, beyond the time it is watched [s]
 
@@ -149,27 +151,23 @@ _READERS: Mapping[str, Callable[[Device], Callable[[], float | None]]] = {
 
 
 def _problems(kind: str, device: Any, watch: Watch, spec: RobotSpec, seconds: float) -> Iterator[str]:
-    if len(watch.stamps) < 2 and seconds > 0.5:
-        yield f"said {'nothing' if len(watch.stamps) == 0 else 'nothing new'} for {seconds:g} s"
+    promised = {"lidar": spec.lidar.rate, "camera": spec.camera.rate}.get(kind)
+    if len(watch.stamps) < 2 and seconds * (promised or _USUAL_RATE) >= _ENOUGH:
+        yield f"said nothing{' new' * bool(watch.stamps)} for {seconds:g} s"
+    if promised and len(watch.stamps) >= _ENOUGH and watch.rate < _SLOW * promised:
+        yield (
+            f"{watch.rate:.1f} Hz instead of the {promised:g} Hz of the robot file "
+            f"(is the line or this computer too slow? otherwise correct {kind}.rate)"
+        )
     match kind:
         case "base":
             yield from base_problems(device)
         case "pan_tilt":
             yield from pan_tilt_problems(device, spec)
         case "lidar":
-            yield from _rate_problems(watch, spec.lidar.rate, "lidar")
             yield from scan_problems(cast(Lidar, device).scan(), spec)
         case "camera":
-            yield from _rate_problems(watch, spec.camera.rate, "camera")
             yield from frame_problems(cast(Camera, device).frame(), spec)
-
-
-def _rate_problems(watch: Watch, promised: float, kind: str) -> Iterator[str]:
-    if 0 < watch.rate < _SLOW * promised:
-        yield (
-            f"{watch.rate:.1f} Hz instead of the {promised:g} Hz of the robot file "
-            f"(is the line or this computer too slow? otherwise correct {kind}.rate)"
-        )
 
 
 def base_problems(base: Base) -> Iterator[str]:

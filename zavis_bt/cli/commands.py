@@ -6,7 +6,6 @@ import contextlib
 import os
 import select
 import sys
-import termios
 import time
 from collections.abc import Sequence
 from types import TracebackType
@@ -50,9 +49,14 @@ def _in_foreground() -> bool:
     """Return whether standard input is a terminal that listens to this program, not to another one."""
     try:
         fd = sys.stdin.fileno()
-        return os.isatty(fd) and os.tcgetpgrp(fd) == os.getpgrp()
-    except (OSError, ValueError, AttributeError, termios.error):  # closed, or replaced by something without a terminal
+        if not os.isatty(fd):
+            return False
+    except (OSError, ValueError, AttributeError):  # closed, or replaced by something that is no file
         return False
+    try:
+        return os.tcgetpgrp(fd) == os.getpgrp()
+    except OSError:  # a terminal that no shell shares out
+        return True
 
 
 class Prompt:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
     from zavis_bt.cli.checkup import Finding
     from zavis_bt.mission import RobotFile
+    from zavis_bt.protocols import Clock
 
+_PATIENCE = 3.0  # so long a LiDAR may take to its first scan [s]
 _QUESTION = (
     "The camera will turn by 10° and back; the base will drive 10 cm ahead and back, and turn by 10° and back.\n"
     "Is the robot on the floor, the way free, and a hand on the emergency stop?"
@@ -39,7 +41,6 @@ def doctor(
     from rich.console import Console
 
     from zavis_bt.cli.computer import look_at_computer
-    from zavis_bt.cli.ending import signals_end
     from zavis_bt.cli.files import load_robot_file
 
     file = None if robot is None else load_robot_file(robot)
@@ -51,14 +52,13 @@ def doctor(
     console.print("[bold]computer[/]")
     _print_figures(computer.items(), console)
     findings: list[Finding] = []
-    with signals_end():
-        for kind in kinds:
-            assert file is not None
-            finding = _examined(file, kind, seconds, console)
-            findings.append(finding)
-            _print_finding(finding, console)
-        if move and file is not None:
-            findings = _moved(file, findings, console)
+    for kind in kinds:
+        assert file is not None
+        finding = _examined(file, kind, seconds, console)
+        findings.append(finding)
+        _print_finding(finding, console)
+    if move and file is not None:
+        findings = _moved(file, findings, console)
     if as_json:
         print(json.dumps(_as_data(robot, computer, findings)))
     _print_summary(findings, console)
@@ -86,7 +86,7 @@ def _chosen(file: RobotFile, only: str | None) -> tuple[str, ...]:
 
 def _ask() -> None:
     try:
-        sure = typer.confirm(_QUESTION)
+        sure = typer.confirm(_QUESTION, err=True)
     except typer.Abort:
         sure = False
     if not sure:
@@ -122,17 +122,23 @@ def _moved(file: RobotFile, findings: Sequence[Finding], console: Console) -> li
 def _trial(file: RobotFile, kind: str) -> list[str]:
     from zavis_bt.cli.motion_trial import BaseTrial, try_pan_tilt
     from zavis_bt.cli.some_devices import SomeDevices
-    from zavis_bt.mission import SafetySettings, WallClock
+    from zavis_bt.mission import WallClock
 
     clock = WallClock()
     try:
         with closing(SomeDevices(file, ("base", "lidar") if kind == "base" else (kind,), clock)) as robot:
-            clock.wait_until(clock.now() + 1.0)  # until both have spoken
             if kind == "base":
-                return BaseTrial(robot, SafetySettings(), clock).run()
+                _wait_for(lambda: robot.lidar.scan() is not None, clock)
+                return BaseTrial(robot, file.safety, clock).run()
             return try_pan_tilt(robot.pan_tilt, file.spec.pan_tilt, clock)
     except ZavisError as error:
         return [str(error)]
+
+
+def _wait_for(condition: Callable[[], bool], clock: Clock) -> None:
+    end = clock.now() + _PATIENCE
+    while not condition() and clock.now() < end:
+        clock.wait_until(clock.now() + 0.02)
 
 
 # -- output ----------------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from zavis_bt.protocols import Clock, Robot
     from zavis_bt.types import Pose2D, Twist2D
 
+_HUNG_UP = 129  # exit code of what lost its terminal, as of SIGHUP
 _PERIOD = 0.05  # between two looks at the keys [s]
 _HELP = """\
   w s ↑ ↓   ahead, back           i k   camera up, down        + -   faster, slower
@@ -41,26 +43,31 @@ def drive(
 ) -> None:
     """Drive slowly with the keyboard; the base moves only while a key is held, and never into what the LiDAR sees."""
     from zavis_bt.cli.drive_view import DriveView
-    from zavis_bt.cli.ending import Ended, signals_end, undisturbed
+    from zavis_bt.cli.ending import Ended, undisturbed
     from zavis_bt.cli.files import load_robot_file
     from zavis_bt.cli.keyboard import Keyboard
     from zavis_bt.cli.teleop import Teleop
-    from zavis_bt.mission import SafetySettings
 
     file, keyboard = load_robot_file(robot), Keyboard()
     try:
-        with signals_end(), _opened(file, world, start) as (driven, clock, sees):
+        with _opened(file, world, start) as (driven, clock, sees):
             print(_HELP.format(hold=hold))
             teleop = Teleop(driven.spec.limits, hold)
-            with keyboard, DriveView(driven.spec) as view:
-                loop = Drive(driven, clock, teleop, SafetySettings(), looks=sees)
+            with keyboard, DriveView() as view:
+                loop = Drive(driven, clock, teleop, file.safety, looks=sees)
                 try:
                     loop.run(keyboard, view.show)
                 finally:
                     with undisturbed():
                         loop.halt()
-    except (Ended, EOFError):  # nobody may be left to read a word of it
-        raise typer.Exit(130) from None
+    except EOFError:
+        raise typer.Exit(_HUNG_UP) from None
+    except OSError as error:
+        if error.errno != errno.EIO:
+            raise
+        raise typer.Exit(_HUNG_UP) from None
+    except Ended as ended:  # nobody may be left to read a word of it
+        raise typer.Exit(ended.exit_code) from None
 
 
 class Drive:

@@ -13,7 +13,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from zavis_bt.types import LaserScan, RobotSpec
+from zavis_bt.types import LaserScan
 
 if TYPE_CHECKING:
     from zavis_bt.cli.drive import Drive
@@ -25,9 +25,8 @@ _STALE = 1.0  # age of a state that is worth a word [s]
 class DriveView:
     """Shows pose, speed, battery, distance to obstacles and faults while somebody drives."""
 
-    def __init__(self, spec: RobotSpec, console: Console | None = None) -> None:
+    def __init__(self, console: Console | None = None) -> None:
         """Prepare to show; ``console`` is the terminal if not given."""
-        self._spec = spec
         self._live = Live(console=console or Console(highlight=False), auto_refresh=False)
         self._due = 0.0
 

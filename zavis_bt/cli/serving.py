@@ -54,7 +54,8 @@ def _rows(devices: SimulatedDevices) -> Iterator[tuple[str, str, str]]:
         yield "", "ARCOS, serial", devices.serial.path
     yield "LiDAR", "SCIP 2.0", settings["lidar"]["settings"]["port"]
     nodes = devices.pan_tilt.nodes
-    bus = f"CAN {devices.places.can_interface} {devices.places.can_channel}"
+    port = "".join(f" port {number}" for number in [devices.places.can_options.get("port")] if number)
+    bus = f"CAN {devices.places.can_interface} {devices.places.can_channel}{port}"
     yield "pan-tilt", "CANopen, CiA 402", f"{bus}, nodes {nodes['pan']} and {nodes['tilt']}"
     yield "camera", "RGB-D frames", settings["camera"]["settings"]["port"]
 
@@ -86,9 +87,9 @@ def attend(devices: SimulatedDevices, world: World, console: Console, *, view: b
         command_line(console) as line,
     ):
         due = 0.0
-        while not _obey(line.lines(_LOOK), desk, line):
+        while not _obey(typed := line.lines(_LOOK), desk, line):
             look()
-            if time.monotonic() >= due:
+            if typed or time.monotonic() >= due:
                 due = time.monotonic() + _SAY
                 line.show(status(devices, desk))
 
@@ -108,17 +109,17 @@ def _obey(lines: Sequence[str], desk: FaultDesk, line: CommandLine) -> bool:
 
 
 def status(devices: SimulatedDevices, desk: FaultDesk) -> str:
-    """Return pose, speed, joints, who is connected and what is broken, in a line."""
+    """Return what is broken, pose, speed, joints, and who is connected, in a line."""
     motion = devices.plant.motion
     x, y, yaw = motion.true
     pan, tilt = devices.plant.joints(devices.plant.now)
     return "  ".join(
         [
+            *(f"✗ {fault}" for fault in desk.faults),
             f"x {x:.2f} y {y:.2f} m {math.degrees(yaw):.0f}°",
             f"{motion.linear:.2f} m/s {math.degrees(motion.angular):.0f}°/s",
             f"pan {math.degrees(pan):.0f}° tilt {math.degrees(tilt):.0f}°",
             *_connected(devices),
-            *desk.faults,
         ]
     )
 

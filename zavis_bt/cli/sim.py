@@ -36,7 +36,9 @@ def serve(
     base_port: Annotated[int, typer.Option(min=0, max=65535, help="TCP port of the base; 0 = any.")] = 8101,
     lidar_port: Annotated[int, typer.Option(min=0, max=65535, help="TCP port of the LiDAR.")] = 10940,
     camera_port: Annotated[int, typer.Option(min=0, max=65535, help="TCP port of the camera.")] = 8102,
-    can: Annotated[str, typer.Option(help="CAN bus of the pan-tilt unit: KIND:CHANNEL, python-can's names.")] = _CAN,
+    can: Annotated[
+        str, typer.Option(help="CAN bus of the pan-tilt unit: KIND:CHANNEL[:PORT] by python-can's names.")
+    ] = _CAN,
     watchdog: Annotated[
         float, typer.Option(min=0, help="The base stops after so long a silence [s]; 0 = never.")
     ] = 1.0,
@@ -109,6 +111,9 @@ def _places(host: str, base: int, lidar: int, camera: int, can: str) -> Places:
     interface, sign, channel = can.partition(":")
     if not (interface and sign and channel):
         raise InputError(f"--can: '{can}' is no bus (KIND:CHANNEL, e.g. {_CAN} or socketcan:vcan0)")
+    group, _, port = channel.rpartition(":")
+    if interface == "udp_multicast" and "." in group and port.isdecimal():
+        return Places(host, base, lidar, camera, interface, group, {"port": int(port)})
     return Places(host, base, lidar, camera, interface, channel)
 
 
