@@ -42,7 +42,7 @@ HeaderT = TypeVar("HeaderT", bound=BaseModel)
 class SimCameraSettings(Settings):
     """Settings of the driver ``sim``."""
 
-    port: str = "tcp://localhost:10950"
+    port: str = "tcp://localhost:8102"
     """Where the simulator's camera listens."""
     rgb: Literal["raw", "jpeg"] = "raw"
     depth: Literal["raw", "png"] = "raw"

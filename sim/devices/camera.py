@@ -84,6 +84,8 @@ class CameraServer:
     def close(self) -> None:
         """Hang up; may be called twice."""
         self._closed.set()
+        with contextlib.suppress(ValueError):  # a second time
+            self._plant.controllers.remove(self._note_step)
         self._shutter.close()
         with contextlib.suppress(OSError):
             self._listener.shutdown(socket.SHUT_RDWR)  # wakes the thread that waits for clients

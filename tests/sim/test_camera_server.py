@@ -241,13 +241,14 @@ def test_what_is_no_request_is_answered_with_what_is_wrong(server, message, word
         assert ask(request()).kind == Kind.FRAME
 
 
-def test_closing_ends_all_threads_and_may_be_done_twice(server):
+def test_closing_ends_all_threads_and_may_be_done_twice(server, plant):
     with line_to(server) as ask:
         ask(request())
         server.close()
         server.close()
     names = {thread.name for thread in threading.enumerate()}
     assert not {name for name in names if name.startswith("camera")}
+    assert not plant.controllers
 
 
 def test_a_port_in_use_is_said_so(server, plant):
