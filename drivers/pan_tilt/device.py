@@ -25,6 +25,7 @@ from zavis_bt.types import DeviceReport, PanTiltState
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.2, 2.0  # between attempts to get going again [s]
 _SPEED_UP = 0.1  # time to the greatest acceleration unless the settings say otherwise [s]
 _HALT, _JOIN = 1.5, 6.0  # [s]
+_STILL = 0.1  # an axis is at rest if it takes longer than this to turn by the tolerance [s]
 
 
 class _Wish(NamedTuple):
@@ -117,6 +118,13 @@ class CanPanTilt:
             self._thread.join(_JOIN)
 
     def _run(self) -> None:
+        try:
+            self._work()
+        finally:
+            if not self._closing.is_set():  # without this thread the drives miss their heartbeat and stop
+                self._told = _Told(self._wish.number, False, "its driver has failed (a bug: see the traceback)")
+
+    def _work(self) -> None:
         while not self._closing.is_set():
             try:
                 self._operate()

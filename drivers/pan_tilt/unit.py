@@ -77,6 +77,7 @@ class Unit:
         self.identities = tuple(self._setup(axis).run(self._spec) for axis in self.axes)
         for axis in self.axes:
             line.command(axis.node, NMT_START)
+        line.beat()
         self.pace.restart()
         self._enable()
         if self._settings.homing is not None and not self._homed:

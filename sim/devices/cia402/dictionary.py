@@ -101,7 +101,7 @@ def _entries(node: int, per_degree: float) -> tuple[_Entry, ...]:
         _Entry(0x6085, "Quick stop deceleration", _U32, degrees(720), "rw", True),
         _Entry(0x6098, "Homing method", _I8, 37),
         _Entry(0x609A, "Homing acceleration", _U32, degrees(90)),
-        _Entry(0x60C5, "Max acceleration", _U32, degrees(1440), "rw", True),
+        _Entry(0x60C5, "Max acceleration", _U32, degrees(4000), "rw", True),
         _Entry(0x60FF, "Target velocity", _I32, 0, "rw", True),
         _Entry(0x6502, "Supported drive modes", _U32, _MODES, "ro"),
     )
