@@ -79,7 +79,7 @@ class Health:
         if not trouble:
             return ""
         retry_at = self._retry_at.setdefault(device, now + _RETRY)
-        return trouble if now < retry_at else ""
+        return trouble.removeprefix(f"{device}: ") if now < retry_at else ""
 
 
 def _old(what: str, now: float, stamp: float | None, limit: float) -> str:
