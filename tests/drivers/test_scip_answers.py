@@ -30,9 +30,14 @@ def test_the_worked_example_is_an_acknowledgement_and_a_scan():
 
 
 def test_lines_come_without_check_characters():
-    lines = seal_information(b"MODL:UST-10LX") + b"\n" + seal(b"003") + b"\n"
+    lines = seal_information(b"MODL:UST-10LX") + b"\n" + seal(b"DMIN:20;") + b"\n"
     (answer,) = AnswerDecoder().feed(encode_answer(b"PP;mine", "00", lines))
-    assert (answer.echo, answer.lines) == (b"PP;mine", (b"MODL:UST-10LX", b"003"))
+    assert (answer.echo, answer.lines) == (b"PP;mine", (b"MODL:UST-10LX", b"DMIN:20"))
+
+
+def test_a_semicolon_at_the_end_of_a_time_is_a_digit():
+    (answer,) = AnswerDecoder().feed(encode_answer(b"TM1", "00", seal(b"005;") + b"\n"))
+    assert answer.lines == (b"005;",)
 
 
 @given(st.lists(st.integers(1, 40)))
