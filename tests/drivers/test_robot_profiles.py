@@ -5,9 +5,11 @@ from pathlib import Path
 import pytest
 
 from drivers.camera.realsense_source import RealSenseSettings
+from drivers.camera.recorded_source import RecordedSettings
 from drivers.camera.sim_source import SimCameraSettings
+from drivers.camera.stereo_source import StereoSettings
 from drivers.lidar.settings import ScipSettings
-from drivers.pan_tilt.settings import PanTiltSettings
+from drivers.pan_tilt.settings import HomingSettings, PanTiltSettings
 from drivers.pioneer.settings import PioneerSettings
 from drivers.profiles import builtin_robot, builtin_robots
 from drivers.settings import read_settings
@@ -64,3 +66,10 @@ def test_serial_lines_and_buses_are_explained_where_they_are_set(name):
 def test_an_unknown_profile_is_told_with_the_nearest_one():
     with pytest.raises(InputError, match="did you mean 'pioneer3at_sim'"):
         builtin_robot("pioneer3at_simm")
+
+
+@pytest.mark.parametrize("settings", [*SETTINGS.values(), HomingSettings, StereoSettings, RecordedSettings])
+def test_every_setting_is_explained_in_the_manual(settings):
+    manual = (Path(__file__).parents[2] / "docs" / "robot.md").read_text(encoding="utf-8")
+    for name in settings.model_fields:
+        assert f"`{name}`" in manual
