@@ -99,6 +99,16 @@ def test_the_base_moves_while_the_key_repeats_and_stands_afterwards():
     assert "stands" in word_line(drive).plain
 
 
+def test_a_key_without_a_meaning_stops_as_fast_as_the_base_can():
+    simulation, drive = drive_at()
+    ticks(simulation, drive, [["w"]] * 20)
+    assert simulation.robot.base.state().twist.linear > 0.1
+    ticks(simulation, drive, [[" "], [], []])
+    assert simulation.robot.base.state().twist.linear == 0.0
+    ticks(simulation, drive, [["w"]] * 10)
+    assert simulation.robot.base.state().twist.linear > 0.1
+
+
 def test_the_robot_is_not_driven_into_what_the_lidar_sees():
     simulation, drive = drive_at()
     ticks(simulation, drive, [["w"]] * 1500)

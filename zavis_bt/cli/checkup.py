@@ -35,6 +35,7 @@ class Finding:
     serial: str = ""
     figures: Mapping[str, str] = field(default_factory=dict)
     problems: tuple[str, ...] = ()
+    opened: bool = True
 
     @property
     def ok(self) -> bool:
@@ -94,7 +95,7 @@ def examine(
     try:
         device = open_device(file, kind, clock)
     except ZavisError as error:
-        return Finding(kind, driver, problems=(_without_place(str(error), file, kind),))
+        return Finding(kind, driver, problems=(_without_place(str(error), file, kind),), opened=False)
     try:
         opened = f"{time.monotonic() - begin:.2f} s"
         watch = _watch(_READERS[kind](device), clock, seconds, progress)

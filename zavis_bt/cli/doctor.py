@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from zavis_bt.mission import RobotFile
     from zavis_bt.protocols import Clock
 
+_BLIND = "was not moved: that needs a LiDAR that is well, to see that the way is free"
 _PATIENCE = 3.0  # so long a LiDAR may take to its first scan [s]
 _QUESTION = (
     "The camera will turn by 10° and back; the base will drive 10 cm ahead and back, and turn by 10° and back.\n"
@@ -102,20 +103,16 @@ def _examined(file: RobotFile, kind: str, seconds: float, console: Console) -> F
 
 
 def _moved(file: RobotFile, findings: Sequence[Finding], console: Console) -> list[Finding]:
-    """Move the devices that are well; return the findings with what came of it."""
-    well = {finding.kind for finding in findings if finding.ok}
+    """Move what could be opened; return the findings with what came of it."""
+    sees = any(finding.kind == "lidar" and finding.ok for finding in findings)
     after = []
     for finding in findings:
-        if finding.kind not in ("base", "pan_tilt") or finding.kind not in well:
-            after.append(finding)
-            continue
-        if finding.kind == "base" and "lidar" not in well:
-            problems = ["was not moved: that needs a LiDAR that is well, to see that the way is free"]
-        else:
-            console.print(f"moving {finding.kind} …")
-            problems = _trial(file, finding.kind)
-        after.append(replace(finding, problems=tuple(problems)))
-        console.print(*(_marks(problems) or ["  [bold green]✓[/] moves as it is told"]), sep="\n")
+        if finding.kind in ("base", "pan_tilt") and finding.opened:
+            console.print(f"\n[bold]moving {finding.kind}[/]")
+            problems = _trial(file, finding.kind) if finding.kind == "pan_tilt" or sees else [_BLIND]
+            console.print(*(_marks(problems) or ["  [bold green]✓[/] moves as it is told"]), sep="\n", soft_wrap=True)
+            finding = replace(finding, problems=(*finding.problems, *problems))
+        after.append(finding)
     return after
 
 

@@ -93,7 +93,7 @@ class Drive:
         """Why the latest command could not be given."""
         self.wanted: Twist2D | None = None
         """What the keys ask for; None to stand still."""
-        self._clock = clock
+        self._clock, self._held = clock, False
 
     @property
     def silent_for(self) -> float:
@@ -121,6 +121,7 @@ class Drive:
             if looks and self.looks:
                 self._look(looks)
             self.wanted = self.teleop.twist(now)
+            self._hold_or_let_go()
             if self.wanted is not None:
                 self.robot.base.command(self.wanted)
             self.robot.base.flush(now)
@@ -133,6 +134,14 @@ class Drive:
         self.robot.base.stop()
         if self.looks:
             self.robot.pan_tilt.stop()
+
+    def _hold_or_let_go(self) -> None:
+        """Stop as fast as possible where a key says so, until one says to move again."""
+        if self.teleop.stop_now:
+            self.robot.base.hold()
+        elif self._held:
+            self.robot.base.resume()
+        self._held = self.teleop.stop_now
 
     def _look(self, looks: list[Look]) -> None:
         """Turn the camera on from where it is now, so that it stops soon after the key is released."""
