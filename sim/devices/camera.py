@@ -6,6 +6,7 @@ import contextlib
 import socket
 import threading
 import time
+from collections.abc import Callable
 
 from drivers.camera.frame_message import (
     Annotation,
@@ -119,17 +120,14 @@ class CameraServer:
             full = len(self._lines) > _MOST_CLIENTS
         try:
             with line:
-                if full:
-                    _send(line, _failure(f"{_MOST_CLIENTS} clients are connected already (close one)"))
-                else:
-                    self._converse(line)
+                self._converse(line, _refusal if full else self._answer)
         except OSError:  # the client has gone
             pass
         finally:
             with self._guard:
                 self._lines.discard(line)
 
-    def _converse(self, line: socket.socket) -> None:
+    def _converse(self, line: socket.socket, answer: Callable[[Message], Message]) -> None:
         decoder = Decoder()
         while not self._closed.is_set():
             try:
@@ -139,7 +137,7 @@ class CameraServer:
             if not data:
                 return
             for request in decoder.feed(data):
-                _send(line, self._answer(request))
+                _send(line, answer(request))
 
     def _answer(self, request: Message) -> Message:
         if request.version != VERSION:
@@ -175,6 +173,10 @@ class CameraServer:
 
 def _annotations(frame: SimFrame) -> tuple[Annotation, ...]:
     return tuple(Annotation(*instance) for instance in frame.instances)
+
+
+def _refusal(request: Message) -> Message:
+    return _failure(f"{_MOST_CLIENTS} clients are connected already (close one)")
 
 
 def _failure(text: str) -> Message:

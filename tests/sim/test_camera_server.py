@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import socket
 import threading
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import numpy as np
 import pytest
@@ -104,10 +104,8 @@ def test_perception_judges_frames_off_the_wire_as_those_at_hand(server, plant):
     same.annotations = true.instances
     detector = SimDetector(["sofa"], np.random.default_rng(1))
     matcher = SimMatcher(lambda a, b: float(a == b), np.random.default_rng(2))
-    found = detector.detect(frame)
-    assert found == detector.detect(same)
-    assert found
-    boxes = [detection.box for detection in found]
+    assert detector.detect(frame) == detector.detect(same)
+    boxes = [view.box for view in true.instances]
     np.testing.assert_array_equal(matcher.match(frame, boxes, ["red mug"]), matcher.match(same, boxes, ["red mug"]))
 
 
@@ -178,13 +176,13 @@ def test_several_clients_are_served(server):
 
 
 def test_one_client_too_many_is_told_so(server):
-    lines = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(8)]
-    assert wait_for(lambda: len(server._lines) == 8)
-    with pytest.raises(DeviceError, match="8 clients are connected already"):
-        open_sim({"port": f"tcp://127.0.0.1:{server.port}"}, context())
-    for line in lines:
-        line.close()
-    assert wait_for(lambda: not server._lines)
+    with ExitStack() as lines:
+        for _ in range(8):
+            lines.enter_context(socket.create_connection(("127.0.0.1", server.port)))
+        assert wait_for(lambda: server.clients == 8)
+        with pytest.raises(DeviceError, match="8 clients are connected already"):
+            open_sim({"port": f"tcp://127.0.0.1:{server.port}"}, context())
+    assert wait_for(lambda: server.clients == 0)
     with opened(server) as camera:
         first_frame(camera)
 
