@@ -56,7 +56,8 @@ def over_loopback(rgb: str, depth: str) -> None:
     listener = socket.create_server(("127.0.0.1", 0))
     client = socket.create_connection(listener.getsockname())
     server, _ = listener.accept()
-    threading.Thread(target=serve, args=(server,), daemon=True).start()
+    answering = threading.Thread(target=serve, args=(server,), daemon=True)
+    answering.start()
     decoder, latencies, sizes = Decoder(), [], 0
     begin, cpu = time.perf_counter(), time.process_time()
     for number in range(FRAMES):
@@ -72,8 +73,10 @@ def over_loopback(rgb: str, depth: str) -> None:
         decode_pixels(frame.rgb, frame.depth, frame.intrinsics)
         latencies.append(1000 * (time.perf_counter() - asked))
     wall, cpu = time.perf_counter() - begin, time.process_time() - cpu
-    for end in (client, server, listener):
-        end.close()
+    client.close()
+    answering.join()
+    server.close()
+    listener.close()
     median, worst = statistics.median(latencies), sorted(latencies)[int(0.99 * FRAMES)]
     print(
         f"rgb {rgb:<4} depth {depth:<3} {FRAMES / wall:7.0f} frames/s {median:7.1f} ms median {worst:7.1f} ms p99 "
