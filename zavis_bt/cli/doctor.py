@@ -118,12 +118,12 @@ def _moved(file: RobotFile, findings: Sequence[Finding], console: Console) -> li
 
 def _trial(file: RobotFile, kind: str) -> list[str]:
     from zavis_bt.cli.motion_trial import BaseTrial, try_pan_tilt
-    from zavis_bt.cli.some_devices import SomeDevices
     from zavis_bt.mission import WallClock
+    from zavis_bt.mission.device_robot import DeviceRobot
 
     clock = WallClock()
     try:
-        with closing(SomeDevices(file, ("base", "lidar") if kind == "base" else (kind,), clock)) as robot:
+        with closing(DeviceRobot(file, clock, kinds=("base", "lidar") if kind == "base" else (kind,))) as robot:
             if kind == "base":
                 _wait_for(lambda: robot.lidar.scan() is not None, clock)
                 return BaseTrial(robot, file.safety, clock).run()

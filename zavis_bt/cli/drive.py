@@ -157,8 +157,8 @@ class Drive:
 def _opened(file: RobotFile, world: str | None, start: str | None) -> Iterator[tuple[Robot, Clock, bool]]:
     """Yield the robot, its clock, and whether it has a pan-tilt unit."""
     from zavis_bt.cli.files import parse_start
-    from zavis_bt.cli.some_devices import SomeDevices
     from zavis_bt.mission import WallClock
+    from zavis_bt.mission.device_robot import DeviceRobot
 
     pose = None if start is None else parse_start(start)
     if not file.devices:
@@ -170,9 +170,9 @@ def _opened(file: RobotFile, world: str | None, start: str | None) -> Iterator[t
             raise InputError(f"{option}: {file.path} has devices of its own (leave it out)")
     kinds = [kind for kind in ("base", "lidar", "pan_tilt") if kind in file.devices or kind != "pan_tilt"]
     clock = WallClock()
-    devices = SomeDevices(file, kinds, clock, lambda kind: print(f"opening {kind} …", flush=True))
+    devices = DeviceRobot(file, clock, kinds=kinds, opening=lambda kind: print(f"opening {kind} …", flush=True))
     try:
-        yield devices, clock, "pan_tilt" in devices
+        yield devices, clock, "pan_tilt" in devices.devices
     finally:
         devices.close()
 
