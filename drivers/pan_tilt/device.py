@@ -86,13 +86,14 @@ class CanPanTilt:
         """Start a move to these angles [rad], clipped to the limits; both axes arrive together.
 
         Raises:
+            ValueError: An angle is not a number.
             DeviceError: The unit cannot move now.
         """
+        if math.isnan(pan) or math.isnan(tilt):
+            raise ValueError(f"pan {pan}, tilt {tilt}: not an angle")
         fault = "is closed" if self._closing.is_set() else self._told.fault
         if fault:
             raise DeviceError(f"{self._where}: {fault}")
-        if not (math.isfinite(pan) and math.isfinite(tilt)):
-            raise DeviceError(f"{self._where}: pan {pan} and tilt {tilt} are no angles")
         spec = self._spec
         target = min(max(pan, spec.pan_min), spec.pan_max), min(max(tilt, spec.tilt_min), spec.tilt_max)
         with self._lock:

@@ -57,7 +57,7 @@ def test_targets_are_clipped_to_the_limits(unit: Unit) -> None:
 
 def test_what_is_no_angle_is_refused(unit: Unit) -> None:
     device, _, _body = unit
-    with pytest.raises(DeviceError, match="no angles"):
+    with pytest.raises(ValueError, match="not an angle"):
         device.move_to(math.nan, 0.0)
     assert device.state().settled
 
