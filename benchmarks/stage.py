@@ -131,14 +131,16 @@ class MissionProcess:
 
     _number = 0
 
-    def __init__(self, on: Stage, target: str, *further: str, tree: str = "search") -> None:
-        """Start it where the robot is."""
+    def __init__(
+        self, on: Stage, target: str, *further: str, tree: str = "search", program: tuple[str, ...] = ("-m", "zavis_bt")
+    ) -> None:
+        """Start it where the robot is; ``program`` is what Python is given in the place of ``zavis``."""
         MissionProcess._number += 1
         self.folder = on.folder / f"run{MissionProcess._number}"
         self._out, self._err = (on.folder / f"mission{MissionProcess._number}.{end}" for end in ("out", "err"))
         pose = on.truth
         start = f"{pose.x:.4f},{pose.y:.4f},{math.degrees(pose.yaw):.3f}"
-        command = [sys.executable, "-m", "zavis_bt", "run", tree, "--target", target, "--robot", str(on.robot_file)]
+        command = [sys.executable, *program, "run", tree, "--target", target, "--robot", str(on.robot_file)]
         command += ["--start", start, "--record", str(self.folder), "--json", *further]
         with self._out.open("wb") as out, self._err.open("wb") as err:
             self._process = subprocess.Popen(command, stdout=out, stderr=err, stdin=subprocess.DEVNULL)

@@ -35,6 +35,8 @@ HARDWARE = os.environ.get("ZAVIS_HARDWARE", "")
 KINDS = ("lockstep", "wire", *(["hardware"] if HARDWARE else []))
 PERIOD = 0.1
 """Between two commands, as a mission gives them [s]."""
+_PATIENT = {"base": {"silence": 3.0}, "pan_tilt": {"answer_timeout": 3.0, "heartbeat_timeout": 3.0}}
+"""Settings of drivers that must not lose a device because the machine is busy."""
 PATIENCE = 20.0
 """How long to wait for what must happen [s]; in lock step this costs nothing."""
 
@@ -164,7 +166,7 @@ def _wire(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
     spec = load_robot(_robot_file(folder)).spec
     devices = stack.enter_context(SimulatedDevices(room(), spec, start))
     clock = WallClock()
-    robot = DeviceRobot(load_robot(devices.robot_file(folder)), clock, start)
+    robot = DeviceRobot(load_robot(devices.robot_file(folder, _PATIENT)), clock, start)
     stack.callback(robot.close)
     robot.wait_until_ready()
     return Rig(
