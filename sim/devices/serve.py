@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from zavis_bt.types import Pose2D, RobotSpec
 
 _P3DX = ("p3dx", "pioneer3dx")  # how the names of robots begin that answer as a Pioneer 3-DX
+_DECELERATION = 1.0  # [m/s²] the base is asked for: a time-out then does not let it roll on for long
 
 
 class _Server(Protocol):
@@ -176,7 +177,7 @@ class SimulatedDevices:
         if self.places.can_options:
             bus["options"] = dict(self.places.can_options)
         return {
-            "base": device("pioneer", port=port("base")),
+            "base": device("pioneer", port=port("base"), deceleration=_DECELERATION),
             "pan_tilt": device("cia402", **bus),
             "lidar": device("scip", port=port("lidar")),
             "camera": device("sim", port=port("camera")),
