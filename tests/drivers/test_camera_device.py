@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -90,6 +91,49 @@ def test_pixels_are_decoded_when_asked_for_once_and_cannot_be_changed(script, de
     assert calls == [1]
     with pytest.raises(ValueError, match="read-only"):
         frame.depth[0, 0] = 1.0
+
+
+def test_pixels_that_could_not_be_had_may_be_asked_for_again(script, device):
+    outcomes = [DeviceError("camera: lost"), images()]
+
+    def fetch():
+        outcome = outcomes.pop(0)
+        if isinstance(outcome, DeviceError):
+            raise outcome
+        return outcome
+
+    script.captures.append(Capture(1.0, INTRINSICS, fetch))
+    assert wait_for(device.frame)
+    frame = device.frame()
+    with pytest.raises(DeviceError, match="lost"):
+        frame.depth.max()
+    assert frame.depth.max() == 1.0
+    assert frame.rgb.max() == 0
+
+
+def test_whoever_looks_at_a_frame_gets_the_same_pixels_and_keeps_no_other_frame_waiting(script, device):
+    calls, begun, go_on = [], threading.Event(), threading.Event()
+
+    def slow():
+        calls.append(1)
+        begun.set()
+        assert go_on.wait(20)
+        return images()
+
+    script.captures.append(Capture(1.0, INTRINSICS, slow))
+    assert wait_for(device.frame)
+    first = device.frame()
+    with ThreadPoolExecutor(3) as pool:
+        looks = [pool.submit(lambda: first.rgb) for _ in range(3)]
+        assert begun.wait(20)
+        script.captures.append(Capture(2.0, INTRINSICS, images))
+        assert wait_for(lambda: device.frame() is not first)
+        assert device.frame().depth.max() == 1.0
+        assert not any(look.done() for look in looks)
+        go_on.set()
+        seen = [look.result(20) for look in looks]
+    assert calls == [1]
+    assert seen[0] is seen[1] is seen[2]
 
 
 def test_a_frame_is_annotated_if_its_capture_is(script, device):
