@@ -2,7 +2,8 @@
 
 Frames of 640 × 480 over loopback, server and client in one process: wall time from request to frame, CPU time of
 both ends together. The pictures are noise on a slope, as costly to compress as a real room, and already rendered; what
-rendering costs comes on top and is in the last line. Stereo depth is timed on one thread.
+rendering costs comes on top and is in a line of its own. The last lines are what the simulator's camera and its driver
+cost in the apartment, as the setting `pixels` has it. Stereo depth is timed on one thread.
 """
 
 from __future__ import annotations
@@ -11,23 +12,32 @@ import socket
 import statistics
 import threading
 import time
+from collections.abc import Callable
 
 import cv2
 import numpy as np
 
 from benchmarks.timing import machine
+from drivers.camera import open_sim
 from drivers.camera.calibration_file import StereoCalibration, matrix_of
 from drivers.camera.frame_message import NextRequest, WireFrame, frame_message, header_message, read_frame, read_header
 from drivers.camera.pixels import decode_pixels, encode_depth, encode_rgb
 from drivers.camera.stereo_depth import StereoDepth
 from drivers.camera.wire import Decoder, Kind, encode
+from drivers.profiles import builtin_robot
 from sim import load_world
 from sim.camera import SimCamera
+from sim.devices.camera import CameraServer
+from sim.devices.plant import Plant
 from sim.scene import Scene
 from sim.worlds import builtin_world
+from zavis_bt.mission import WallClock
+from zavis_bt.mission.robot_file import load_robot
+from zavis_bt.protocols import DeviceContext
 from zavis_bt.types import CameraIntrinsics, CameraSpec
 
 FRAMES = 60
+SECONDS = 6.0
 SIZE = (640, 480)
 INTRINSICS = CameraIntrinsics.from_fov(*SIZE, 1.05)
 
@@ -116,6 +126,35 @@ def rendering() -> None:
     print(f"rendering 640 x 480 in the apartment: {statistics.median(spent[1:]):.0f} ms CPU")
 
 
+def looking(pixels: str, looks: float) -> None:
+    """Take frames for a few seconds, and look at so many of them a second."""
+    world, spec = load_world(builtin_world("apartment")), load_robot(builtin_robot("pioneer3at_sim")).spec
+    plant = Plant(world, spec, world.starts[0])
+    server = CameraServer(plant)
+    plant.start()
+    server.start()
+    around = DeviceContext("benchmark", spec, WallClock(), world.starts[0], lambda stamp: np.eye(4))
+    time.sleep(1.0)
+    idle = cpu_over(SECONDS)
+    camera = open_sim({"port": f"tcp://127.0.0.1:{server.port}", "pixels": pixels}, around)
+    time.sleep(1.0)
+    busy = cpu_over(SECONDS, lambda: camera.frame().rgb if looks else None, 1 / looks if looks else SECONDS)
+    rate = camera.report().figures["rate"]
+    camera.close()
+    server.close()
+    plant.close()
+    print(f"pixels {pixels:<4} {looks:g} looks/s: frames at {rate}, {busy - idle:5.1%} of a core")
+
+
+def cpu_over(seconds: float, look: Callable[[], object] = lambda: None, period: float = 1.0) -> float:
+    """Return the share of a core that this process takes, looking now and then."""
+    begin, cpu = time.perf_counter(), time.process_time()
+    while time.perf_counter() - begin < seconds:
+        look()
+        time.sleep(period)
+    return (time.process_time() - cpu) / (time.perf_counter() - begin)
+
+
 def main() -> None:
     cv2.setNumThreads(1)
     print(f"640 x 480 over loopback, {FRAMES} frames each; {machine()}")
@@ -124,6 +163,8 @@ def main() -> None:
     stereo((320, 240))
     stereo((640, 480))
     rendering()
+    for pixels, looks in (("send", 0.0), ("ask", 0.0), ("ask", 1.0)):
+        looking(pixels, looks)
 
 
 if __name__ == "__main__":

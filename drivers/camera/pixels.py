@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -54,7 +55,7 @@ def decode_pixels(
     """Return colour (h, w, 3) uint8 and depth (h, w) float32 [m].
 
     Raises:
-        WireError: A compressed image is damaged.
+        WireError: An image is damaged, or is not there.
     """
     shape = intrinsics.height, intrinsics.width
     colours = _decoded(rgb, (*shape, 3), np.dtype(np.uint8))
@@ -64,6 +65,8 @@ def decode_pixels(
 
 def _decoded(image: WireImage, shape: Sequence[int], dtype: np.dtype[Any]) -> NDArray[Any]:
     if image.encoding == "raw":
+        if len(image.data) != math.prod(shape) * dtype.itemsize:
+            raise WireError(f"the raw image has {len(image.data)} bytes ({math.prod(shape) * dtype.itemsize} would do)")
         return np.frombuffer(image.data, dtype).reshape(shape)
     import cv2
 

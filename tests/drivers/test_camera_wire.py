@@ -4,6 +4,7 @@ import contextlib
 import json
 import re
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,14 +15,17 @@ from hypothesis import strategies as st
 from drivers.camera import wire
 from drivers.camera.frame_message import (
     Annotation,
+    Gone,
+    IdentifyRequest,
     NextRequest,
+    PixelsRequest,
     WireFrame,
     frame_message,
     header_message,
     read_frame,
     read_header,
 )
-from drivers.camera.pixels import decode_pixels, encode_depth, encode_rgb
+from drivers.camera.pixels import WireImage, decode_pixels, encode_depth, encode_rgb
 from drivers.camera.wire import Decoder, Kind, Message, WireError, encode
 from zavis_bt.types import Box, CameraIntrinsics
 
@@ -43,6 +47,11 @@ def frame(number: int = 7, rgb: str = "raw", depth: str = "raw") -> WireFrame:
     return WireFrame(
         number, 12.5, 12.625, INTRINSICS, encode_rgb(pictures[0], rgb), encode_depth(pictures[1], depth), (MUG, SOFA)
     )
+
+
+def kept(number: int = 7) -> WireFrame:
+    """A frame whose images stay with the server."""
+    return replace(frame(number), rgb=WireImage("jpeg", b""), depth=WireImage("raw", b""))
 
 
 def stream(*messages: Message) -> bytes:
@@ -121,15 +130,21 @@ def mutated(rng: np.random.Generator, data: bytes) -> bytes:
 
 def test_a_million_random_and_mutated_bytes_do_no_harm():
     rng, decoder, fed, good = np.random.default_rng(3), Decoder(), 0, stream(frame_message(frame()))
+    asked = stream(frame_message(kept(2)), header_message(Kind.PIXELS, PixelsRequest(number=2)))
+    asked += stream(header_message(Kind.GONE, Gone(number=2, oldest=5)))
     tracemalloc.start()
     decoder.feed(good)
     before = tracemalloc.get_traced_memory()[0]
     while fed < 1_000_000:
         random = rng.integers(0, 256, int(rng.integers(1, 3000)), dtype=np.uint8).tobytes()
-        data = random if rng.random() < 0.5 else mutated(rng, good)
+        data = random if rng.random() < 0.5 else mutated(rng, good if rng.random() < 0.5 else asked)
         for message in decoder.feed(data):
+            for model in (PixelsRequest, Gone, IdentifyRequest):
+                with contextlib.suppress(WireError):
+                    read_header(model, message)
             with contextlib.suppress(WireError):
-                read_frame(message)
+                found = read_frame(message)
+                decode_pixels(found.rgb, found.depth, found.intrinsics)
         assert decoder.pending <= len(good)
         fed += len(data)
     held = tracemalloc.get_traced_memory()[0] - before
@@ -178,6 +193,38 @@ def test_a_frame_comes_out_as_it_went_in(rgb, depth):
     assert (distances[3:5, 3:5] == 0).all()
 
 
+def test_a_kept_frame_has_everything_but_its_images():
+    (message,) = Decoder().feed(stream(frame_message(kept())))
+    received = read_frame(message)
+    assert message.body == b""
+    assert received == kept()
+    assert received.is_kept
+    assert not frame().is_kept
+    assert (received.rgb.encoding, received.depth.encoding) == ("jpeg", "raw")
+
+
+def test_a_frame_with_one_image_of_two_is_refused():
+    for half in (replace(frame(), rgb=WireImage("raw", b"")), replace(frame(), depth=WireImage("raw", b""))):
+        with pytest.raises(WireError, match="0 bytes"):
+            read_frame(frame_message(half))
+
+
+@pytest.mark.parametrize("encoding", ["raw", "jpeg"])
+def test_images_that_are_not_there_cannot_be_decoded(encoding):
+    with pytest.raises(WireError, match="image"):
+        decode_pixels(WireImage(encoding, b""), WireImage("raw", b""), INTRINSICS)
+
+
+@settings(max_examples=60, deadline=None)
+@given(headers)
+def test_whatever_a_header_says_it_is_a_request_or_refused(header):
+    for model, sound in ((PixelsRequest, {"number": 3}), (Gone, {"number": 3, "oldest": 4}), (IdentifyRequest, {})):
+        assert read_header(model, Message(Kind.PIXELS, sound)).model_dump().items() >= sound.items()
+        if header:
+            with pytest.raises(WireError):
+                read_header(model, Message(Kind.PIXELS, sound | header))
+
+
 def test_colours_keep_their_order_in_jpeg():
     red = np.zeros((16, 16, 3), np.uint8)
     red[:, :, 0] = 250
@@ -223,9 +270,14 @@ def test_the_documented_example_is_what_is_sent():
     blocks = re.findall(r"^```(json)?\n(.*?)^```$", example, re.MULTILINE | re.DOTALL)
     hexadecimal = [re.findall(r"^(?:[0-9a-f]{2} ?)+", block, re.MULTILINE) for kind, block in blocks if not kind]
     found = [message for lines in hexadecimal for message in Decoder().feed(bytes.fromhex("".join(lines)))]
-    assert [message.kind for message in found] == [Kind.IDENTIFY, Kind.NEXT, Kind.NOTHING_NEW, Kind.FRAME]
-    assert [json.loads(block) for kind, block in blocks if kind] == [found[-1].header]
-    last = read_frame(found[-1])
+    kinds = [Kind.IDENTIFY, Kind.NEXT, Kind.NOTHING_NEW, Kind.FRAME, Kind.NEXT, Kind.FRAME, Kind.PIXELS, Kind.GONE]
+    assert [message.kind for message in found] == kinds
+    assert [json.loads(block) for kind, block in blocks if kind] == [found[3].header]
+    last = read_frame(found[3])
     rgb, depth = decode_pixels(last.rgb, last.depth, last.intrinsics)
     assert rgb.tolist() == [[[255, 0, 0], [0, 0, 255]]]
     assert depth.tolist() == [[1.5, 0.0]]
+    assert read_header(NextRequest, found[4]) == NextRequest(after=17, pixels="keep")
+    assert read_frame(found[5]).is_kept
+    assert read_header(PixelsRequest, found[6]) == PixelsRequest(number=18)
+    assert read_header(Gone, found[7]) == Gone(number=18, oldest=31)

@@ -68,12 +68,16 @@ def request(**wishes) -> bytes:
 
 
 def first_frame(camera) -> RgbdFrame:
+    """Return the first frame, looked at, so that it outlives its camera."""
     assert wait_for(camera.frame)
-    return camera.frame()
+    frame = camera.frame()
+    assert frame.rgb.shape[:2] == frame.depth.shape
+    return frame
 
 
-def test_frames_show_what_the_plants_camera_sees(server, plant):
-    with opened(server) as camera:
+@pytest.mark.parametrize("pixels", ["ask", "send"])
+def test_frames_show_what_the_plants_camera_sees(server, plant, pixels):
+    with opened(server, pixels=pixels) as camera:
         frame, true = first_frame(camera), plant.frame()
     assert isinstance(frame, AnnotatedFrame)
     assert frame.intrinsics == true.intrinsics
@@ -89,8 +93,9 @@ def test_annotations_are_the_ground_truth(server, plant):
     assert {view.id for view in instances_of(frame)} == {"sofa_1", "mug_1", "mug_2"}
 
 
-def test_compressed_images_say_the_same(server, plant):
-    with opened(server, rgb="jpeg", depth="png") as camera:
+@pytest.mark.parametrize("pixels", ["ask", "send"])
+def test_compressed_images_say_the_same(server, plant, pixels):
+    with opened(server, rgb="jpeg", depth="png", pixels=pixels) as camera:
         frame, true = first_frame(camera), plant.frame()
     np.testing.assert_allclose(frame.depth, true.depth, atol=0.00051)
     assert np.abs(frame.rgb.astype(int) - true.rgb).mean() < 6
@@ -177,10 +182,10 @@ def test_several_clients_are_served(server):
 
 def test_one_client_too_many_is_told_so(server):
     with ExitStack() as lines:
-        for _ in range(8):
+        for _ in range(16):
             lines.enter_context(socket.create_connection(("127.0.0.1", server.port)))
-        assert wait_for(lambda: server.clients == 8)
-        with pytest.raises(DeviceError, match="8 clients are connected already"):
+        assert wait_for(lambda: server.clients == 16)
+        with pytest.raises(DeviceError, match="16 connections are open already"):
             open_sim({"port": f"tcp://127.0.0.1:{server.port}"}, context())
     assert wait_for(lambda: server.clients == 0)
     with opened(server) as camera:
@@ -227,6 +232,9 @@ def test_garbage_is_passed_over(server):
     ("message", "words"),
     [
         (Message(Kind.NEXT, {"color": 1}), "color"),
+        (Message(Kind.PIXELS, {"number": 0}), "number"),
+        (Message(Kind.PIXELS, {"rgb": "raw"}), "number"),
+        (Message(Kind.IDENTIFY, {"purpose": "tea"}), "purpose"),
         (Message(0x33, {}), "kind 51 are unknown"),
         (Message(Kind.NEXT, {}, version=2), "version 2"),
     ],
@@ -293,10 +301,22 @@ def test_a_server_that_answers_wrongly_is_no_camera(answer, words):
 
 def test_a_frame_that_is_none_is_a_loss():
     with answering({Kind.IDENTIFY: [IDENTITY], Kind.NEXT: [Message(Kind.FRAME, {"number": 1})]}) as port:
-        camera = open_sim({"port": port}, context())
+        camera = open_sim({"port": port, "pixels": "send"}, context())
         assert wait_for(lambda: camera.report().figures["lost"] != "0 times")
         camera.close()
         assert camera.frame() is None
+
+
+def test_pixels_that_a_server_keeps_unasked_are_missed_in_one_line():
+    images = {"rgb": {"encoding": "raw", "size": 0}, "depth": {"encoding": "raw", "size": 0}}
+    intrinsics = {"width": 4, "height": 3, "fx": 5.0, "fy": 5.0, "cx": 2.0, "cy": 1.5}
+    header = {"number": 1, "stamp": 0.5, "now": 0.5, "intrinsics": intrinsics, **images}
+    with answering({Kind.IDENTIFY: [IDENTITY], Kind.NEXT: [Message(Kind.FRAME, header)]}) as port:
+        camera = open_sim({"port": port, "pixels": "send"}, context())
+        assert wait_for(camera.frame)
+        with pytest.raises(DeviceError, match=r"tcp://127.0.0.1:\d+: the raw image has 0 bytes"):
+            camera.frame().rgb  # noqa: B018  looking is what fails
+        camera.close()
 
 
 def test_nobody_there_is_said_with_the_remedy():
