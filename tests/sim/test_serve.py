@@ -54,7 +54,9 @@ def test_the_robot_file_that_is_written_holds_the_same_model(devices, tmp_path):
 
 def test_further_settings_go_into_the_robot_file(devices, tmp_path):
     file = load_robot(devices.robot_file(tmp_path, {"base": {"command_timeout": 0.3}}))
-    assert file.devices["base"].settings == {"port": f"tcp://127.0.0.1:{devices.base.port}", "command_timeout": 0.3}
+    settings = devices.settings()["base"]["settings"]
+    assert settings["port"] == f"tcp://127.0.0.1:{devices.base.port}"
+    assert file.devices["base"].settings == {**settings, "command_timeout": 0.3}
 
 
 def test_the_drivers_find_all_devices_and_drive_the_body(devices, tmp_path):

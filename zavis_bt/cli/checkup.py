@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from zavis_bt.errors import ZavisError
+from zavis_bt.errors import DeviceError, ZavisError
 from zavis_bt.mission.device_robot import open_device
 from zavis_bt.mission.robot_file import RobotFile
 from zavis_bt.protocols import Base, Camera, Clock, Device, Lidar, PanTilt
@@ -226,7 +226,11 @@ def frame_problems(frame: RgbdFrame | None, spec: RobotSpec) -> Iterator[str]:
     if frame is None:
         yield "no frame arrived"
         return
-    rgb, depth, wanted = frame.rgb, frame.depth, spec.camera.intrinsics
+    try:
+        rgb, depth, wanted = frame.rgb, frame.depth, spec.camera.intrinsics
+    except DeviceError as error:  # its pixels are fetched only now
+        yield str(error)
+        return
     height, width = rgb.shape[:2]
     if (width, height) != (wanted.width, wanted.height):
         said = f"{wanted.width} x {wanted.height}"
