@@ -191,11 +191,14 @@ class Bench:
 
     def _driving(self) -> MissionProcess:
         """Return a mission that has been driving for a while."""
-        since = None
+        since, endings = None, []
         wait_for(lambda: False, _PAUSE)
         end = time.monotonic() + 4 * _TO_DRIVE
         while time.monotonic() < end:
             if self._mission is None or self._mission.ended:
+                if self._mission is not None:
+                    endings.append(self._mission.last_words)
+                    print(f"a mission ended by itself: {endings[-1]}", file=sys.stderr, flush=True)
                 self._drop()
                 self._missions += 1
                 self._mission, since = MissionProcess(self._on, TARGET, "--seed", str(self._missions), *_BUDGET), None
@@ -203,7 +206,7 @@ class Bench:
             if since and time.monotonic() - since > 0.4:
                 return self._mission
             time.sleep(0.01)
-        raise SystemExit(f"no mission drives: {self._mission and self._mission.last_words}")
+        raise SystemExit(f"no mission drives: {endings or 'the last one neither drives nor ends'}")
 
     def _drop(self) -> None:
         if self._mission is not None:
