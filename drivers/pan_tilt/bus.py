@@ -33,7 +33,7 @@ def open_bus(settings: PanTiltSettings) -> can.BusABC:
     import can
 
     for library in ("can", "canopen"):  # what they have to say is said here, in other words
-        logging.getLogger(library).addHandler(logging.NullHandler())
+        logging.getLogger(library).setLevel(logging.CRITICAL)
     if settings.interface not in can.VALID_INTERFACES:
         known = did_you_mean(settings.interface, can.VALID_INTERFACES)
         raise Trouble(f"there is no kind of CAN interface '{settings.interface}'{known or ' (socketcan is the usual)'}")
