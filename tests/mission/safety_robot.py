@@ -172,7 +172,7 @@ class Layer:
     def tick(self, twist: Twist2D | None, seconds: float = TICK) -> list[Twist2D | str]:
         """Read, ask, flush, let time pass; return what was sent to the base in this tick."""
         before = len(self.body.sent)
-        self.robot.base.read()
+        self.robot.base.read(self.body.now)
         if twist is not None:
             self.robot.base.command(twist)
         self.robot.base.flush(self.body.now)

@@ -115,7 +115,7 @@ class Drive:
     def tick(self, keys: list[str]) -> None:
         """Read the robot, take the keys since the last tick, command it."""
         now = self._clock.now()
-        self.robot.base.read()
+        self.robot.base.read(now)
         try:
             looks = [look for key in keys if (look := self.teleop.press(key, now))]
             if looks and self.looks:

@@ -76,7 +76,7 @@ class BaseTrial:
             self._base.stop()
 
     def _move(self, what: str, twist: Twist2D, wanted: float) -> list[str]:
-        self._base.read()
+        self._base.read(self._clock.now())
         first = self._base.latest
         self._held_back.clear()
         end, done = self._clock.now() + _PATIENCE, 0.0
@@ -84,7 +84,7 @@ class BaseTrial:
             self._base.command(twist)
             self._base.flush(self._clock.now())
             self._clock.wait_until(self._clock.now() + _PERIOD)
-            self._base.read()
+            self._base.read(self._clock.now())
             done = _moved(first, self._base.latest, turning=twist.angular != 0)
         self._base.stop()
         self._rest()
@@ -101,7 +101,7 @@ class BaseTrial:
         while self._clock.now() < end:
             self._clock.wait_until(self._clock.now() + _PERIOD)
             twist = self._base.latest.twist
-            self._base.read()
+            self._base.read(self._clock.now())
             if twist == self._base.latest.twist == Twist2D():
                 return
 

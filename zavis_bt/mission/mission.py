@@ -120,7 +120,7 @@ class Mission:
 
     def _sense(self) -> None:
         base = self._robot.base
-        base.read()
+        base.read(self._parts.clock.now())
         if self._health.check(self._parts.clock.now()):  # or who knows from where the scan was taken
             self._mapper.update(base.scan, base.latest.pose if base.scan is None else base.pose_at(base.scan.stamp))
             self._odometer.note(base.latest.pose)
@@ -179,7 +179,7 @@ class Mission:
         wall_start = time.perf_counter()
         self._started = self._parts.clock.now()
         with OrderlyEnd(self.runner.stop) as end:
-            self._robot.base.read()
+            self._robot.base.read(self._started)
             self._notify(lambda observer: observer.on_start(self))
             success, reason = False, "interrupted"
             try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from zavis_bt.errors import DeviceError
 from zavis_bt.mission.safety.braking import BrakingRule, Verdict
@@ -54,9 +55,10 @@ class SafeBase:
         """Why the latest twist was limited; empty if it was passed on as it was."""
         return self._reason
 
-    def read(self) -> None:
-        """Read base and LiDAR."""
-        self.latest = self._robot.base.state()
+    def read(self, now: float) -> None:
+        """Read base and LiDAR; what the base said a moment ago is carried on to now [s]."""
+        state = self._robot.base.state()
+        self.latest = state if now <= state.stamp else replace(state, pose=self._robot.base.pose_at(now))
         self.scan = self._robot.lidar.scan()
 
     def state(self) -> BaseState:
