@@ -44,7 +44,7 @@ episodes-named:
 	@[ -n "$(EPISODES)" ] || { echo 'make bench: name the episodes: make bench EPISODES=episodes.jsonl' >&2; exit 1; }
 
 bench-speed: .venv/.dev
-	@for name in lidar mapping_speed planning missions startup; do echo "== $$name"; $(BIN)/python -m benchmarks.$$name $(ARGS) || exit; done
+	@for name in lidar mapping_speed planning missions startup arcos scip pan_tilt camera fuzz; do echo "== $$name"; $(BIN)/python -m benchmarks.$$name $(ARGS) || exit; done
 
 clean:
 	rm -rf .venv build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache .benchmarks

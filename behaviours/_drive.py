@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from enum import Enum, auto
 
+from behaviours._retreat import Retreat
 from zavis_bt.planning import FollowStatus, Navigator, PathFollower, PlanningError
 from zavis_bt.protocols import Job, Jobs, Journal, Robot
-from zavis_bt.types import Path, Pose2D
+from zavis_bt.types import Path, Pose2D, Twist2D
 
 
 class DriveStatus(Enum):
@@ -49,6 +50,8 @@ class Drive:
         self._replans_left = max_replans
         self._follower: PathFollower | None = None
         self._driven = 0.0
+        self._twist = Twist2D()
+        self._retreat: Retreat | None = None
         self.reason = "planning"
         self._plan: Job[Path] = self._submit()
 
@@ -71,24 +74,37 @@ class Drive:
             self._follower = self._navigator.follow(
                 path, self._goal, tolerance=self._tolerance, yaw_tolerance=self._yaw_tolerance
             )
-        progress = self._follower.update(self._robot.base.state(), self._robot.lidar.scan())
+        state = self._robot.base.state()
+        if self._retreat is None and (state.bumper or state.stalled):
+            self._retreat = Retreat(self._robot, self._twist)
+        if self._retreat is not None:
+            return self._get_free(self._retreat)
+        progress = self._follower.update(state, self._robot.lidar.scan())
         match progress.status:
             case FollowStatus.ARRIVED:
                 return DriveStatus.ARRIVED
             case FollowStatus.DRIVING | FollowStatus.TURNING:
+                self._twist = progress.twist
                 self._robot.base.command(progress.twist)
                 self.reason = f"{progress.remaining:.1f} m to go"
                 return DriveStatus.DRIVING
         return self._replan(progress.status)
 
     def cancel(self) -> None:
-        """Stop planning and driving."""
+        """Stop planning, and slow down to rest."""
         self._plan.cancel()
         self._journal.record("path", path=None)
-        self._robot.base.stop()
+        self._robot.base.command(Twist2D())
 
     def _submit(self) -> Job[Path]:
         return self._jobs.submit("plan", self._navigator.plan, self._robot.base.state().pose, self._goal)
+
+    def _get_free(self, retreat: Retreat) -> DriveStatus:
+        self.reason = "getting free of what it ran into"
+        if not retreat.update():
+            return DriveStatus.DRIVING
+        self._retreat = None
+        return self._replan(FollowStatus.BLOCKED)
 
     def _replan(self, status: FollowStatus) -> DriveStatus:
         if status is not FollowStatus.INVALID:  # a path that new map made impassable is replaced without limit

@@ -28,7 +28,7 @@ class Turn:
         """Command this tick's turn rate; return whether the heading is reached."""
         error = wrap_angle(self._heading - self._robot.base.state().pose.yaw)
         if abs(error) <= self._tolerance:
-            self._robot.base.stop()
+            self._robot.base.command(Twist2D())
             return True
         limits = self._robot.spec.limits
         braking = math.sqrt(2 * limits.angular_acceleration * abs(error)) * 0.7

@@ -42,5 +42,5 @@ class BackUp(Behaviour):
         return self.running(f"{self._goal - self.moved:.2f} m to go")
 
     def terminate(self, new_status: Status) -> None:
-        """Stop the base."""
-        self._robot.base.stop()
+        """Slow down to rest."""
+        self._robot.base.command(Twist2D())

@@ -12,7 +12,7 @@ from zavis_bt.perception import Perceiver
 from zavis_bt.planning import Navigator
 from zavis_bt.protocols import Jobs, Journal, Robot
 from zavis_bt.tree import Behaviour, In, Out, Status
-from zavis_bt.types import Candidate, Pose2D
+from zavis_bt.types import Candidate, Pose2D, Twist2D
 
 
 class Scan(Behaviour):
@@ -74,7 +74,7 @@ class Scan(Behaviour):
         """Stop what moves."""
         self._percepts.cancel()
         self._robot.pan_tilt.stop()
-        self._robot.base.stop()
+        self._robot.base.command(Twist2D())
 
     def _turning(self) -> Status:
         assert self._turn is not None

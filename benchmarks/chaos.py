@@ -7,7 +7,7 @@ import selectors
 import socket
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 _CHUNK = 65536
 _POLL = 0.05  # [s]
 
-Tap = Callable[[float, bytes], None]
+Tap = Callable[[float, int, bytes], None]
 
 
 @dataclass
@@ -33,6 +33,7 @@ class Counters:
 class _Pair:
     driver: socket.socket
     device: socket.socket
+    number: int
 
     def close(self) -> None:
         for end in (self.driver, self.device):
@@ -56,7 +57,8 @@ class ChaosProxy:
         self.port: int = self._listener.getsockname()[1]
         self.counters = Counters()
         self.tap: Tap | None = None
-        """Called with `time.monotonic` [s] and the bytes that are handed to the device, by the proxy's thread."""
+        """Called by the proxy's thread with `time.monotonic` [s], the connection's number, and the bytes that are about
+        to be handed to the device."""
         self._pairs: list[_Pair] = []
         self._orders: list[Callable[[], None]] = []
         self._done = threading.Condition()
@@ -176,8 +178,8 @@ class ChaosProxy:
         for end in (driver, device):
             end.settimeout(5.0)
             end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._pairs.append(_Pair(driver, device))
         self.counters.connections += 1
+        self._pairs.append(_Pair(driver, device, self.counters.connections))
 
     def _pass(self, pair: _Pair, source: socket.socket, data: bytes) -> None:
         if self._rate:
@@ -185,7 +187,7 @@ class ChaosProxy:
         if source is pair.driver:
             self.counters.to_device += len(data)
             if self.tap is not None:
-                self.tap(time.monotonic(), data)
+                self.tap(time.monotonic(), pair.number, data)
             pair.device.sendall(data)
         elif self._muted:
             self.counters.dropped += len(data)
@@ -202,7 +204,7 @@ class ChaosProxy:
 
 
 @contextlib.contextmanager
-def proxied(target: tuple[str, int]):
+def proxied(target: tuple[str, int]) -> Iterator[ChaosProxy]:
     """Open a line to a device for a while."""
     proxy = ChaosProxy(target)
     proxy.start()

@@ -4,7 +4,8 @@ Each decoder gets a million bytes in pieces of any length: noise, sound packets 
 or inserted, packets cut off and spliced, and nonsense inside sound frames, so that what lies behind the checksum is
 reached too. Every now and then the line is good again; then packets are sent until one is decoded. A decoder passes if
 nothing it is not allowed to raise escapes, if it needs no more than two packets to find one, and if it holds as little
-memory at the end as it did half way.
+memory at the end as it did half way. Frames on the CAN bus go to the pan-tilt driver and to the simulated drives while
+both are at work; they must be able to move again when it is over.
 """
 
 from __future__ import annotations
@@ -16,35 +17,16 @@ import sys
 import time
 import tracemalloc
 import zlib
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 
+from benchmarks.fuzz_can import fuzz_can
 from benchmarks.fuzz_decoders import SUBJECTS, Subject
+from benchmarks.fuzz_result import Result
 from benchmarks.timing import machine, verdict
 
 BYTES = 1_000_000
-PACKETS = 2  # to recover
-GROWTH = 50_000  # of what is kept for good: layouts of packets of every length, the buffer's reserve [bytes]
-
-
-@dataclass
-class Result:
-    """How a decoder did."""
-
-    eaten: int = 0
-    recoveries: int = 0
-    worst: int = 0
-    """Packets it needed to recover, at most."""
-    growth: int = 0
-    """Memory gained from half way to the end [bytes]."""
-    peak: int = 0
-    """[bytes]"""
-    error: str = ""
-
-    @property
-    def passed(self) -> bool:
-        return not self.error and self.worst <= PACKETS and self.growth < GROWTH
 
 
 def garbage(subject: Subject, rng: np.random.Generator) -> bytes:
@@ -120,19 +102,26 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
     print(machine())
-    passed = True
-    for kind in SUBJECTS:
-        begin = time.process_time()
-        result = fuzz(kind(), arguments.bytes, arguments.seed)
-        passed = passed and result.passed
-        spent = time.process_time() - begin
-        print(
-            f"{kind.name:18s} {result.eaten:8d} bytes in {spent:5.1f} s, {result.recoveries} times good again after"
-            f" {result.worst} packet(s) at most, memory {result.growth:+d} bytes (peak {result.peak}):"
-            f" {result.error or verdict(result.passed)}",
-            flush=True,
-        )
-    return 0 if passed else 1
+    runs: dict[str, Callable[[], Result]] = {
+        kind.name: lambda kind=kind: fuzz(kind(), arguments.bytes, arguments.seed) for kind in SUBJECTS
+    }
+    for side in ("driver", "drives"):
+        runs[f"CANopen, {side}"] = lambda side=side: fuzz_can(side, arguments.bytes, arguments.seed)
+    results = [_shown(name, run) for name, run in runs.items()]
+    return 0 if all(result.passed for result in results) else 1
+
+
+def _shown(name: str, run: Callable[[], Result]) -> Result:
+    begin = time.process_time()
+    result = run()
+    spent = time.process_time() - begin
+    packets = f" after {result.worst} packet(s) at most" if result.worst else ""
+    print(
+        f"{name:18s} {result.eaten:8d} bytes in {spent:5.1f} s, {result.recoveries} times good again{packets},"
+        f" memory {result.growth:+d} bytes (peak {result.peak}): {result.error or verdict(result.passed)}",
+        flush=True,
+    )
+    return result
 
 
 if __name__ == "__main__":

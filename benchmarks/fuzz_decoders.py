@@ -7,8 +7,18 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
+from drivers.camera.frame_message import (
+    Gone,
+    IdentifyRequest,
+    NextRequest,
+    PixelsRequest,
+    WireFrame,
+    frame_message,
+    header_message,
+    read_frame,
+    read_header,
+)
 from drivers.camera.frame_message import Identity as CameraIdentity
-from drivers.camera.frame_message import NextRequest, WireFrame, frame_message, header_message, read_frame, read_header
 from drivers.camera.pixels import decode_pixels, encode_depth, encode_rgb
 from drivers.camera.wire import Decoder, Kind, Message, WireError, encode
 from drivers.lidar import codec as scip
@@ -176,7 +186,7 @@ class Camera(Subject):
 
     def take(self, data: bytes) -> None:
         for message in self._decoder.feed(data):
-            for model in (CameraIdentity, NextRequest):
+            for model in (CameraIdentity, IdentifyRequest, NextRequest, PixelsRequest, Gone):
                 with contextlib.suppress(WireError):
                     read_header(model, message)
             with contextlib.suppress(WireError):

@@ -80,11 +80,15 @@ class Link:
 
     def close(self) -> None:
         """Close the line; never raises, may be called twice. The reader's thread must have ended before."""
-        line = getattr(self._serial, "_socket", None)
+        line: Any = getattr(self._serial, "_socket", None)
         with contextlib.suppress(OSError):
-            self._serial.close()
-        if line is not None:
-            line.close()  # pyserial leaves the socket open if the other end was gone before
+            if line is None:
+                self._serial.close()
+                return
+            # pyserial would sleep after closing a socket, and leave it open if the other end was gone before.
+            self._serial.is_open = False
+            line.shutdown(socket.SHUT_RDWR)
+        line.close()
 
 
 def _send_at_once(fd: int) -> None:

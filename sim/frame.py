@@ -64,6 +64,11 @@ class SimFrame(RgbdFrame):
         self._scene, self._true_transform = scene, true_transform
         self._depth_range = depth_range
 
+    def unrendered(self) -> SimFrame:
+        """Return the same frame, for which nothing is computed yet."""
+        poses = self._true_transform, self.transform_camera_to_map
+        return SimFrame(self._scene, self.intrinsics, *poses, self.stamp, self._depth_range)
+
     @cached_property
     def _view(self) -> View:
         return View.of(self._true_transform, self.intrinsics)

@@ -61,6 +61,7 @@ class Base(Protocol):
         The base stops by itself if no command follows in time.
 
         Raises:
+            ValueError: The velocity is not finite.
             DeviceError: The base cannot be reached.
         """
 
@@ -84,6 +85,7 @@ class PanTilt(Protocol):
         """Start a move to these angles [rad], clipped to the limits.
 
         Raises:
+            ValueError: An angle is not a number.
             DeviceError: The unit cannot be reached.
         """
 

@@ -85,8 +85,9 @@ def read_calibration(path: Path) -> Calibration:
         InputError: The file is missing, damaged or of another kind.
     """
     file = _File(path)
+    size, units = file.size(), file.number("depth_units", 1000.0)
     matrix, distortion = file.matrix("camera_matrix", (3, 3)), file.optional_vector("distortion_coefficients")
-    return Calibration(file.size(), matrix, distortion, file.number("rms", 0.0), file.number("depth_units", 1000.0))
+    return Calibration(size, matrix, distortion, file.number("rms", 0.0, least=0.0), units)
 
 
 def read_stereo(path: Path) -> StereoCalibration:
@@ -96,9 +97,10 @@ def read_stereo(path: Path) -> StereoCalibration:
         InputError: The file is missing, damaged or of another kind.
     """
     file = _File(path)
+    size, rms = file.size(), file.number("rms", 0.0, least=0.0)
     values = {name: file.matrix(name, _SHAPES.get(name)) for name in _STEREO}
     values.update({name: values[name].ravel() for name in ("D1", "D2", "T")})
-    calibration = StereoCalibration(file.size(), **values, rms=file.number("rms", 0.0))
+    calibration = StereoCalibration(size, **values, rms=rms)
     if not calibration.baseline > 0:
         raise InputError(f"{path}: P2: the right camera is not to the right of the left one (swap them)")
     return calibration
@@ -159,12 +161,12 @@ class _File:
         width, height = self.number("image_width"), self.number("image_height")
         return int(width), int(height)
 
-    def number(self, name: str, default: float | None = None) -> float:
+    def number(self, name: str, default: float | None = None, least: float = 1e-3) -> float:
         node = self._storage.getNode(name)
         if node.empty() and default is not None:
             return default
-        value = node.real() if node.isInt() or node.isReal() else 0.0
-        if not value >= (default is None):
+        value = node.real() if node.isInt() or node.isReal() else -1.0
+        if not least <= value < np.inf:
             raise InputError(f"{self._path}: {name}: is missing or no positive number")
         return float(value)
 

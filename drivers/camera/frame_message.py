@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -40,6 +40,12 @@ class _Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+class IdentifyRequest(_Entry):
+    """Header that says what a connection is for."""
+
+    purpose: Literal["frames", "pixels"] = "frames"
+
+
 class NextRequest(_Entry):
     """Header of a request for a frame newer than one that is known."""
 
@@ -50,6 +56,16 @@ class NextRequest(_Entry):
     rgb: RgbEncoding = "raw"
     depth: DepthEncoding = "raw"
     annotations: bool = False
+    pixels: Literal["send", "keep"] = "send"
+    """Whether the images come with the frame, or stay with the server until they are asked for."""
+
+
+class PixelsRequest(_Entry):
+    """Header of a request for the images of a frame that the server keeps."""
+
+    number: Annotated[int, Field(ge=1)]
+    rgb: RgbEncoding = "raw"
+    depth: DepthEncoding = "raw"
 
 
 class Identity(_Entry):
@@ -67,6 +83,14 @@ class NothingNew(_Entry):
 
     number: _Count
     now: _Number
+
+
+class Gone(_Entry):
+    """Header that says a frame is no longer kept."""
+
+    number: _Count
+    oldest: _Count
+    """Of the frames that are still kept; 0 if there are none."""
 
 
 class Failure(_Entry):
@@ -133,6 +157,8 @@ class _FrameHeader(_Entry):
 
     @model_validator(mode="after")
     def _raw_sizes_fit(self) -> _FrameHeader:
+        if self.rgb.size == self.depth.size == 0:  # the images are kept
+            return self
         pixels = self.intrinsics.width * self.intrinsics.height
         for name, image, size in (("rgb", self.rgb, 3 * pixels), ("depth", self.depth, 2 * pixels)):
             if image.encoding == "raw" and image.size != size:
@@ -154,6 +180,11 @@ class WireFrame:
     rgb: WireImage
     depth: WireImage
     annotations: tuple[Annotation, ...] | None = None
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the images stayed with the server."""
+        return not self.rgb.data and not self.depth.data
 
 
 HeaderT = TypeVar("HeaderT", bound=BaseModel)

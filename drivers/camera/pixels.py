@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -54,16 +55,18 @@ def decode_pixels(
     """Return colour (h, w, 3) uint8 and depth (h, w) float32 [m].
 
     Raises:
-        WireError: A compressed image is damaged.
+        WireError: An image is damaged, or is not there.
     """
     shape = intrinsics.height, intrinsics.width
     colours = _decoded(rgb, (*shape, 3), np.dtype(np.uint8))
     millimetres = _decoded(depth, shape, np.dtype("<u2"))
-    return colours, millimetres.astype(np.float32) * np.float32(0.001)
+    return colours, millimetres.astype(np.float32) / np.float32(1000)
 
 
 def _decoded(image: WireImage, shape: Sequence[int], dtype: np.dtype[Any]) -> NDArray[Any]:
     if image.encoding == "raw":
+        if len(image.data) != math.prod(shape) * dtype.itemsize:
+            raise WireError(f"the raw image has {len(image.data)} bytes ({math.prod(shape) * dtype.itemsize} would do)")
         return np.frombuffer(image.data, dtype).reshape(shape)
     import cv2
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Mapping
 from functools import partial
@@ -111,10 +112,8 @@ class RealSenseSource:
         """Stop the camera."""
         pipeline, self._pipeline = self._pipeline, None
         if pipeline is not None:
-            try:
+            with contextlib.suppress(RuntimeError):  # the camera has gone already
                 pipeline.stop()
-            except RuntimeError:  # the camera has gone already
-                pass
 
     def _taken(self, frames: Any, now: float, read: float) -> Capture | None:
         self._heard = now
@@ -140,7 +139,7 @@ class RealSenseSource:
 
     def _stamp(self, frames: Any, read: float) -> float:
         """Return when the frames were taken, on the mission's clock [s]."""
-        taken = frames.get_timestamp() / 1000
+        taken: float = frames.get_timestamp() / 1000
         if frames.get_frame_timestamp_domain() != self._rs.timestamp_domain.hardware_clock:
             age = time.time() - taken
             if 0 <= age < _OLDEST:

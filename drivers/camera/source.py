@@ -22,7 +22,7 @@ class Capture:
     """Time of capture on the mission's clock [s]."""
     intrinsics: CameraIntrinsics
     pixels: Pixels
-    """As `RgbdFrame` wants it; called by other threads, once."""
+    """As `RgbdFrame` wants it; called by other threads, until it succeeds once. May raise `DeviceError`."""
     annotations: tuple[Any, ...] | None = None
     """Ground truth, if the camera is a simulated one that was asked for it."""
 

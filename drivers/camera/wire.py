@@ -32,9 +32,11 @@ class Kind(IntEnum):
 
     IDENTIFY = 0x01
     NEXT = 0x02
+    PIXELS = 0x03
     IDENTITY = 0x81
     FRAME = 0x82
     NOTHING_NEW = 0x83
+    GONE = 0x84
     ERROR = 0xFF
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from drivers.lidar.codec import CLOCK_SPAN
 
 _WINDOW = 10.0  # [s]; crystals part by less than 1 ms in that time
-_JUMP = 0.5  # [s] between what the two clocks say has passed; more is a restarted sensor
+_JUMP = 0.5  # [s] by which a scan is earlier than it can be, if the sensor's clock has jumped
 
 
 class SensorClock:
@@ -29,14 +29,14 @@ class SensorClock:
         """
         quickest = min(exchanges, key=lambda exchange: exchange[1] - exchange[0], default=None)
         self._synchronised: float | None = None
-        self._last: tuple[float, float] | None = None  # sensor's time without wrap, arrival
+        self._time: float | None = None  # of the sensor without wrap
         self._raw = 0
         self._delay: float | None = None
         self._least = self._least_before = math.inf  # of arrival minus sensor's time, in this window and the last
         self._window_end = -math.inf
         if quickest is not None:
             asked, answered, self._raw = quickest
-            self._last = self._raw / 1000, answered
+            self._time = self._raw / 1000
             self._synchronised = (asked + answered) / 2 - self._raw / 1000
             self._window_end = answered + _WINDOW
 
@@ -55,11 +55,20 @@ class SensorClock:
         Returns:
             Time on the mission's clock, never after the arrival [s].
         """
-        time = self._unwrap(raw, arrival)
+        time = self._unwrap(raw)
+        if arrival - time < self._expected() - _JUMP:  # a scan may come late, but not early
+            self._restart()
         if arrival >= self._window_end:
             self._close_window(arrival)
         self._least = min(self._least, arrival - time)
         return min(time + self._offset(), arrival)
+
+    def _expected(self) -> float:
+        """Return what arrival minus sensor's time is at least, by all that is known [s]."""
+        known = min(self._least, self._least_before)
+        if math.isfinite(known):
+            return known
+        return self._synchronised if self._delay is None and self._synchronised is not None else -math.inf
 
     def _offset(self) -> float:
         if self._delay is None and self._synchronised is not None:
@@ -72,22 +81,18 @@ class SensorClock:
         self._least_before, self._least = self._least, math.inf
         self._window_end = arrival + _WINDOW
 
-    def _unwrap(self, raw: int, arrival: float) -> float:
-        """Return the sensor's time without wrap [s]; after a jump of its clock, begin the windows anew."""
-        if self._last is None:
-            time = raw / 1000
-        else:
-            before, arrived = self._last
-            passed = (raw - self._raw + CLOCK_SPAN // 2) % CLOCK_SPAN - CLOCK_SPAN // 2
-            time = before + passed / 1000
-            if abs(passed / 1000 - (arrival - arrived)) > _JUMP:
-                self._restart(arrival - time)
-        self._last, self._raw = (time, arrival), raw
-        return time
+    def _unwrap(self, raw: int) -> float:
+        """Return the sensor's time without wrap [s]."""
+        passed = 0 if self._time is None else (raw - self._raw + CLOCK_SPAN // 2) % CLOCK_SPAN - CLOCK_SPAN // 2
+        self._time = raw / 1000 if self._time is None else self._time + passed / 1000
+        self._raw = raw
+        if passed < -1000 * _JUMP:
+            self._restart()
+        return self._time
 
-    def _restart(self, difference: float) -> None:
-        """Take ``difference`` [s] for the least delay, and the synchronisation as it was before the jump."""
+    def _restart(self) -> None:
+        """Find out anew how the clocks stand, with the delay of before: the sensor's has jumped."""
         if self._delay is None and self._synchronised is not None:
             known = min(self._least, self._least_before)
             self._delay = max(known - self._synchronised, 0.0) if math.isfinite(known) else 0.0
-        self._least, self._least_before = difference, math.inf
+        self._least = self._least_before = math.inf

@@ -43,7 +43,7 @@ class Session:
         """
         answer = self.try_to_ask(request, timeout=timeout, tries=tries)
         if answer is None:
-            raise DeviceError(self._silence(request))
+            raise DeviceError(self.silence(request))
         return answer
 
     def try_to_ask(self, request: Request, *, timeout: float = 0.5, tries: int = 2) -> Answer | None:
@@ -91,7 +91,8 @@ class Session:
             self.try_to_ask(Request("QT"), timeout=0.2, tries=1)
         self.link.close()
 
-    def _silence(self, request: Request) -> str:
+    def silence(self, request: Request) -> str:
+        """Return what to tell when nobody answers a request: what came instead, and the remedy."""
         if not self._heard:
             hint = "is it the LiDAR's port, and no other program connected to it?"
             return f"{self.place}: does not answer ({hint if self.link.is_tcp else 'is it the right port, and baud?'})"

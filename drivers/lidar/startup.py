@@ -34,12 +34,17 @@ def wake(session: Session) -> None:
     Raises:
         DeviceError: Nobody answers in SCIP 2.0.
     """
-    session.link.write(b"\n")
     stop = Request("QT")
-    if not session.link.is_tcp and session.try_to_ask(stop, timeout=0.3, tries=1) is None:
-        session.link.write(Request("SCIP2.0").line + b"\n")
-        session.drain(0.1, 0.5)
-    session.ask(stop)
+    try:
+        session.link.write(b"\n")
+        if not session.link.is_tcp and session.try_to_ask(stop, timeout=0.3, tries=1) is None:
+            session.link.write(Request("SCIP2.0").line + b"\n")
+            session.drain(0.1, 0.5)
+        answer = session.try_to_ask(stop)
+    except DeviceError as error:
+        raise DeviceError(f"{error} (a LiDAR serves one program at a time: does another use it?)") from error
+    if answer is None:
+        raise DeviceError(session.silence(stop))
 
 
 def identify(session: Session) -> NamePlate:

@@ -55,6 +55,11 @@ class Axis:
         """Measured angle [rad]."""
         return self.position / self.units
 
+    @property
+    def operational(self) -> bool:
+        """Whether it exchanges process data: it has sent some since its last heartbeat, or that says so."""
+        return self.heard > self.beaten or self.communication in (None, OPERATIONAL)
+
     def to_units(self, angle: float) -> int:
         """Return an angle [rad], or its derivative, in the drive's units."""
         return round(angle * self.units)
@@ -91,8 +96,3 @@ class Axis:
     def _on_emergency(self, code: int) -> None:
         self.emergencies.append((time.monotonic(), code))
         self.emergency = 0 if clears(code) else code
-
-    @property
-    def operational(self) -> bool:
-        """Whether, by its last heartbeat, it exchanges process data."""
-        return self.communication in (None, OPERATIONAL)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import logging
+import os
 import socket
 from typing import TYPE_CHECKING
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     import can
 
 _FROM_DRIVES = (EMCY, TPDO1, TPDO2, SDO_ANSWER, HEARTBEAT)
+_IP_MULTICAST_ALL = 49  # of linux/in.h
 _ADAPTERS = ("slcan", "serial", "robotell", "seeedstudio")
 
 
@@ -30,7 +33,7 @@ def open_bus(settings: PanTiltSettings) -> can.BusABC:
     import can
 
     for library in ("can", "canopen"):  # what they have to say is said here, in other words
-        logging.getLogger(library).addHandler(logging.NullHandler())
+        logging.getLogger(library).setLevel(logging.CRITICAL)
     if settings.interface not in can.VALID_INTERFACES:
         known = did_you_mean(settings.interface, can.VALID_INTERFACES)
         raise Trouble(f"there is no kind of CAN interface '{settings.interface}'{known or ' (socketcan is the usual)'}")
@@ -41,11 +44,19 @@ def open_bus(settings: PanTiltSettings) -> can.BusABC:
         bus = can.Bus(interface=settings.interface, channel=settings.channel, **{**options, **settings.options})
     except Exception as error:  # python-can's back ends raise whatever they meet: OSError, NameError, TypeError, …
         raise Trouble(explain(error, settings)) from error
+    if settings.interface == "udp_multicast":
+        _hear_own_group_only(bus)
     nodes = settings.pan_node, settings.tilt_node
     bus.set_filters(
         [{"can_id": base + node, "can_mask": 0x7FF, "extended": False} for base in _FROM_DRIVES for node in nodes]
     )
     return bus
+
+
+def _hear_own_group_only(bus: can.BusABC) -> None:
+    """Keep out what others send on other groups of the same port, which Linux hands to every socket otherwise."""
+    with contextlib.suppress(OSError), socket.socket(fileno=os.dup(bus.fileno())) as line:
+        line.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
 
 
 def explain(error: BaseException, settings: PanTiltSettings) -> str:

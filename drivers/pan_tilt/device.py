@@ -25,6 +25,7 @@ from zavis_bt.types import DeviceReport, PanTiltState
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.2, 2.0  # between attempts to get going again [s]
 _SPEED_UP = 0.1  # time to the greatest acceleration unless the settings say otherwise [s]
 _HALT, _JOIN = 1.5, 6.0  # [s]
+_STILL = 0.1  # an axis is at rest if it takes longer than this to turn by the tolerance [s]
 
 
 class _Wish(NamedTuple):
@@ -85,13 +86,14 @@ class CanPanTilt:
         """Start a move to these angles [rad], clipped to the limits; both axes arrive together.
 
         Raises:
+            ValueError: An angle is not a number.
             DeviceError: The unit cannot move now.
         """
+        if math.isnan(pan) or math.isnan(tilt):
+            raise ValueError(f"pan {pan}, tilt {tilt}: not an angle")
         fault = "is closed" if self._closing.is_set() else self._told.fault
         if fault:
             raise DeviceError(f"{self._where}: {fault}")
-        if not (math.isfinite(pan) and math.isfinite(tilt)):
-            raise DeviceError(f"{self._where}: pan {pan} and tilt {tilt} are no angles")
         spec = self._spec
         target = min(max(pan, spec.pan_min), spec.pan_max), min(max(tilt, spec.tilt_min), spec.tilt_max)
         with self._lock:
@@ -117,6 +119,13 @@ class CanPanTilt:
             self._thread.join(_JOIN)
 
     def _run(self) -> None:
+        try:
+            self._work()
+        finally:
+            if not self._closing.is_set():  # without this thread the drives miss their heartbeat and stop
+                self._told = _Told(self._wish.number, False, "its driver has failed (a bug: see the traceback)")
+
+    def _work(self) -> None:
         while not self._closing.is_set():
             try:
                 self._operate()

@@ -86,6 +86,14 @@ class Line:
         """
         self.send(NMT, bytes([command, node]))
 
+    def beat(self) -> None:
+        """Send this computer's heartbeat out of turn: a drive begins to watch with the first that it hears.
+
+        Raises:
+            Trouble: The bus does not take it.
+        """
+        self.send(HEARTBEAT + self._settings.master_node, bytes([OPERATIONAL]))
+
     def read(self, node: int, index: int, sub: int = 0) -> bytes | None:
         """Return an object of a drive, or None if the drive lacks it.
 

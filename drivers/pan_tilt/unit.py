@@ -77,6 +77,7 @@ class Unit:
         self.identities = tuple(self._setup(axis).run(self._spec) for axis in self.axes)
         for axis in self.axes:
             line.command(axis.node, NMT_START)
+        line.beat()
         self.pace.restart()
         self._enable()
         if self._settings.homing is not None and not self._homed:
@@ -109,7 +110,7 @@ class Unit:
         end = time.monotonic() + _REST
         while time.monotonic() < end:
             self.idle(self.pace.period)
-            if all(self._silent(axis) or abs(axis.velocity / axis.units) < _AT_REST for axis in self.axes):
+            if not any(self._moves(axis) for axis in self.axes):
                 return
 
     def idle(self, seconds: float) -> None:
@@ -183,6 +184,10 @@ class Unit:
         if state is not State.ENABLED:
             return f"{axis} is in '{state.text if state else 'no known state'}' (has somebody else switched it off?)"
         return ""
+
+    def _moves(self, axis: Axis) -> bool:
+        known = not (axis.restarted or self._silent(axis)) and axis.operational
+        return known and abs(axis.velocity / axis.units) > _AT_REST
 
     def _silent(self, axis: Axis) -> bool:
         settings, now = self._settings, time.monotonic()

@@ -11,7 +11,16 @@ from typing import Any
 
 from drivers.history import PoseHistory
 from drivers.pioneer.cadence import Cadence
-from drivers.pioneer.codec import CommandNumber, PacketError, Sip, decode_sip, encode_command, is_sip
+from drivers.pioneer.codec import (
+    CommandNumber,
+    PacketError,
+    PacketType,
+    Sip,
+    decode_encoders,
+    decode_sip,
+    encode_command,
+    is_sip,
+)
 from drivers.pioneer.connection import EMERGENCY_STOP, Connection, connect, say_farewell
 from drivers.pioneer.health import Health
 from drivers.pioneer.models import charge_share
@@ -25,7 +34,8 @@ from zavis_bt.protocols import DeviceContext
 from zavis_bt.types import BaseState, DeviceReport, Pose2D, Twist2D
 
 _POLL = 0.05  # [s]
-_FIRST_SIP = 2.0  # [s]
+_FIRST_SIP = 2.0  # after connecting [s]
+_SWITCH_ON = 3.0  # the motors are on or have failed so soon after the first SIP [s]
 _SHORTEST_PAUSE, _LONGEST_PAUSE = 0.2, 2.0  # between attempts to reconnect [s]
 _REST_WITHIN = 1.0  # [s]
 _AT_REST = 0.01  # [m/s, rad/s]
@@ -59,7 +69,8 @@ class PioneerBase:
         self._listener = threading.Thread(target=self._run, name="pioneer listener", daemon=True)
         atexit.register(self.close)
         self._listener.start()
-        if not self._ready.wait(_FIRST_SIP + _POLL) or self._health.packets == 0:
+        self._ready.wait(_FIRST_SIP + _SWITCH_ON)
+        if self._health.packets == 0:
             self.close()
             raise self._failure or DeviceError(f"{self._place}: connected, but tells nothing")
 
@@ -82,6 +93,7 @@ class PioneerBase:
 
         Raises:
             DeviceError: The link is lost.
+            ValueError: It is not a velocity: not finite.
         """
         if not self._cadence.set(*self._connection.bounds.units(twist)):
             raise DeviceError(self._state.fault or f"{self._place}: is not connected")
@@ -151,6 +163,8 @@ class PioneerBase:
             for payload in connection.line.read(_POLL):
                 if is_sip(payload) and self._take(payload, connection):
                     heard, patience = time.monotonic(), self._settings.silence
+                elif payload[0] == PacketType.ENCODER:
+                    self._take_encoders(payload, connection)
             if self._cadence.failure is not None:
                 raise self._cadence.failure
             if time.monotonic() - heard > patience:
@@ -174,10 +188,21 @@ class PioneerBase:
         self._publish(sip, pose, twist, stamp)
         return True
 
+    def _take_encoders(self, payload: bytes, connection: Connection) -> None:
+        try:
+            encoders = decode_encoders(payload)
+        except PacketError:
+            self._health.malformed += 1
+            return
+        if connection.ticks_per_mm:
+            stamp = self._context.clock.now()
+            self._odometry.bridge(encoders, stamp, connection.parameters, connection.ticks_per_mm)
+
     def _publish(self, sip: Sip, pose: Pose2D, twist: Twist2D, stamp: float) -> None:
-        """Make this the latest state; the fault of a lost link stays until the motors are on again, or known not to."""
+        """Make this the latest state; the fault of a lost link stays until motors and pose are settled."""
         self._health.voltage = voltage = (sip.battery_x10 or sip.battery) / 10
         motors = self._motors
+        settled = motors.settled and self._odometry.settled
         self._state = BaseState(
             pose=pose,
             twist=twist,
@@ -186,15 +211,16 @@ class PioneerBase:
             bumper=bool(sip.front_bumpers or sip.rear_bumpers),
             stalled=sip.left_stalled or sip.right_stalled,
             estop=motors.stop_pressed,
-            fault=motors.fault if motors.settled else self._state.fault,
+            fault=motors.fault if settled else self._state.fault,
         )
-        if motors.settled:
+        if settled:
             self._ready.set()
 
     def _lose(self, error: DeviceError) -> None:
         """Say that the link is lost, and why."""
         self._failure = error
         self._state = replace(self._state, fault=f"{error}; reconnecting")
+        self._ready.set()
 
     def _reconnect(self) -> Connection | None:
         """Return a new connection, after as many attempts as it takes; None if the driver is closed meanwhile."""

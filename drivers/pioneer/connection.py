@@ -20,6 +20,7 @@ _OTHER_BAUDS = (9600, 38400, 19200, 115200, 57600)
 _OTHER_TRIES = 2
 _SWITCH_WAIT = 0.9  # after a change of speed [s]
 _GAP = 0.005  # the controller wants so much time for a command [s]
+_STREAM = 2  # encoder packets with every SIP
 _GOODBYE = 0.3  # [s]
 HALT = encode_command(CommandNumber.VEL, 0) + encode_command(CommandNumber.RVEL, 0)
 """Come to rest with normal braking."""
@@ -40,14 +41,23 @@ class Connection:
     baud: int
     """Speed of a serial port; 0 on TCP."""
 
+    @property
+    def ticks_per_mm(self) -> int:
+        """Of the wheel encoders; 0 if it is not known."""
+        return self.met.config.ticks_per_mm if self.met.config else 0
+
     def prepare(self, sonar: bool) -> None:
         """Set the bounds and switch the motors on; the robot forgets both when it is closed.
 
         Raises:
             DeviceError: The line is broken.
         """
-        sonar_command = encode_command(CommandNumber.SONAR, int(sonar))
-        for command in (*self.bounds.commands(), sonar_command, encode_command(CommandNumber.ENABLE, 1)):
+        last = (
+            encode_command(CommandNumber.SONAR, int(sonar)),
+            encode_command(CommandNumber.ENCODER, _STREAM if self.ticks_per_mm else 0),
+            encode_command(CommandNumber.ENABLE, 1),
+        )
+        for command in (*self.bounds.commands(), *last):
             self.line.write(command)
             time.sleep(_GAP)
 

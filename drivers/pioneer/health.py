@@ -21,14 +21,14 @@ _LOW_VOLTAGE = 11.5
 class Health:
     """Counts what happens on the link, and puts it into words. One thread counts, any may ask."""
 
-    def __init__(self, settings_rate: float, limits: BaseLimits) -> None:
+    def __init__(self, rate: float, limits: BaseLimits) -> None:
         """Begin to count.
 
         Args:
-            settings_rate: Wanted rate of velocities [Hz].
+            rate: Wanted rate of velocities [Hz].
             limits: Of the robot file.
         """
-        self._rate, self._limits = settings_rate, limits
+        self._rate, self._limits = rate, limits
         self.reconnects = 0
         self.malformed = 0
         """Packets with a valid checksum that make no sense."""
@@ -92,7 +92,7 @@ class Health:
         if errors > 10 and errors > _CORRUPTED_SHARE * self.packets:
             yield f"{errors} corrupted packets (check the cable, its length and the serial speed)"
         if self.malformed:
-            yield f"{self.malformed} status packets made no sense (check the robot's firmware)"
+            yield f"{self.malformed} packets made no sense (check the robot's firmware)"
         if odometry.jumps:
             yield f"the odometry jumped {odometry.jumps} times and the jumps were left out (does the robot restart?)"
 

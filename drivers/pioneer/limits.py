@@ -27,7 +27,13 @@ class Bounds:
     """[degree/s²]"""
 
     def units(self, twist: Twist2D) -> tuple[int, int]:
-        """Return VEL [mm/s] and RVEL [degree/s] for a velocity, within the bounds; not-a-number counts as zero."""
+        """Return VEL [mm/s] and RVEL [degree/s] for a velocity, within the bounds.
+
+        Raises:
+            ValueError: It is not a velocity: not finite.
+        """
+        if not (math.isfinite(twist.linear) and math.isfinite(twist.angular)):
+            raise ValueError(f"{twist} is not a velocity")
         velocity = _whole(twist.linear * 1000, -self.reverse, self.forward)
         rotation = _whole(math.degrees(twist.angular), -self.rotation, self.rotation)
         return velocity, rotation
@@ -70,4 +76,4 @@ def bounds_of(limits: BaseLimits, deceleration: float | None, parameters: Parame
 
 
 def _whole(value: float, lowest: float, highest: float) -> int:
-    return 0 if math.isnan(value) else round(min(max(value, lowest), highest))
+    return round(min(max(value, lowest), highest))

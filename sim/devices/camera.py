@@ -6,19 +6,23 @@ import contextlib
 import socket
 import threading
 import time
+from collections.abc import Callable
 
 from drivers.camera.frame_message import (
     Annotation,
     Failure,
+    Gone,
+    IdentifyRequest,
     Identity,
     NextRequest,
     NothingNew,
+    PixelsRequest,
     WireFrame,
     frame_message,
     header_message,
     read_header,
 )
-from drivers.camera.pixels import encode_depth, encode_rgb
+from drivers.camera.pixels import WireImage, encode_depth, encode_rgb
 from drivers.camera.wire import VERSION, Decoder, Kind, Message, WireError, encode
 from sim.devices.plant import Plant
 from sim.devices.shutter import Shutter
@@ -28,14 +32,15 @@ from zavis_bt.errors import DeviceError
 
 _STEP = 1 / STEPS_PER_SECOND  # [s]
 _CHUNK = 1 << 16
-_MOST_CLIENTS = 8
+_MOST_LINES = 16  # eight clients, each with a second line for pixels
 _PATIENCE = 5.0  # a client that takes nothing for so long is dropped [s]
 
 
 class CameraServer:
     """Serves what the plant's camera sees to up to eight clients, each of which asks for frame after frame.
 
-    Nothing is rendered that nobody asks for.
+    Nothing is rendered that nobody asks for: a client may leave a frame's pixels here, and fetch them within the next
+    600 frames over a second line.
     """
 
     def __init__(self, plant: Plant, host: str = "127.0.0.1", port: int = 0) -> None:
@@ -61,13 +66,14 @@ class CameraServer:
         """TCP port it listens at."""
         self._closed = threading.Event()
         self._lines: set[socket.socket] = set()
+        self._pixel_lines: set[socket.socket] = set()
         self._guard = threading.Lock()
         self._threads = [threading.Thread(target=self._accept, name="camera server", daemon=True)]
 
     @property
     def clients(self) -> int:
-        """Clients that are connected."""
-        return len(self._lines)
+        """Clients that are connected, be it with a second line for pixels or without."""
+        return len(self._lines) - len(self._pixel_lines)
 
     def start(self) -> None:
         """Answer."""
@@ -84,6 +90,8 @@ class CameraServer:
     def close(self) -> None:
         """Hang up; may be called twice."""
         self._closed.set()
+        with contextlib.suppress(ValueError):  # a second time
+            self._plant.controllers.remove(self._note_step)
         self._shutter.close()
         with contextlib.suppress(OSError):
             self._listener.shutdown(socket.SHUT_RDWR)  # wakes the thread that waits for clients
@@ -114,20 +122,18 @@ class CameraServer:
         """Answer one client until it goes."""
         with self._guard:
             self._lines.add(line)
-            full = len(self._lines) > _MOST_CLIENTS
+            full = len(self._lines) > _MOST_LINES
         try:
             with line:
-                if full:
-                    _send(line, _failure(f"{_MOST_CLIENTS} clients are connected already (close one)"))
-                else:
-                    self._converse(line)
+                self._converse(line, _refusal if full else self._answer)
         except OSError:  # the client has gone
             pass
         finally:
             with self._guard:
                 self._lines.discard(line)
+                self._pixel_lines.discard(line)
 
-    def _converse(self, line: socket.socket) -> None:
+    def _converse(self, line: socket.socket, answer: Callable[[socket.socket, Message], Message]) -> None:
         decoder = Decoder()
         while not self._closed.is_set():
             try:
@@ -137,28 +143,46 @@ class CameraServer:
             if not data:
                 return
             for request in decoder.feed(data):
-                _send(line, self._answer(request))
+                _send(line, answer(line, request))
 
-    def _answer(self, request: Message) -> Message:
+    def _answer(self, line: socket.socket, request: Message) -> Message:
         if request.version != VERSION:
             return _failure(f"version {request.version} of the protocol is not spoken here (version {VERSION} is)")
-        if request.kind == Kind.IDENTIFY:
-            return header_message(Kind.IDENTITY, Identity(model="zavis simulated camera", rate=self._rate))
-        if request.kind != Kind.NEXT:
-            return _failure(f"requests of kind {request.kind} are unknown")
         try:
-            wanted = read_header(NextRequest, request)
+            match request.kind:
+                case Kind.IDENTIFY:
+                    return self._identify(line, read_header(IdentifyRequest, request))
+                case Kind.NEXT:
+                    return self._next(read_header(NextRequest, request))
+                case Kind.PIXELS:
+                    return self._look_back(read_header(PixelsRequest, request))
         except WireError as error:
             return _failure(str(error))
-        return self._next(wanted)
+        return _failure(f"requests of kind {request.kind} are unknown")
+
+    def _identify(self, line: socket.socket, asked: IdentifyRequest) -> Message:
+        if asked.purpose == "pixels":
+            with self._guard:
+                self._pixel_lines.add(line)
+        return header_message(Kind.IDENTITY, Identity(model="zavis simulated camera", rate=self._rate))
 
     def _next(self, wanted: NextRequest) -> Message:
         number, frame = self._shutter.newer_than(wanted.after, wanted.wait)
         if frame is None:
             return header_message(Kind.NOTHING_NEW, NothingNew(number=number, now=self._now()))
-        rgb, depth = encode_rgb(frame.rgb, wanted.rgb), encode_depth(frame.depth, wanted.depth)
+        if wanted.pixels == "keep":
+            rgb, depth = WireImage(wanted.rgb, b""), WireImage(wanted.depth, b"")
+        else:
+            rgb, depth = encode_rgb(frame.rgb, wanted.rgb), encode_depth(frame.depth, wanted.depth)
         annotations = _annotations(frame) if wanted.annotations else None
         return frame_message(WireFrame(number, frame.stamp, self._now(), frame.intrinsics, rgb, depth, annotations))
+
+    def _look_back(self, wanted: PixelsRequest) -> Message:
+        frame = self._shutter.taken(wanted.number)
+        if frame is None:
+            return header_message(Kind.GONE, Gone(number=wanted.number, oldest=self._shutter.oldest))
+        rgb, depth = encode_rgb(frame.rgb, wanted.rgb), encode_depth(frame.depth, wanted.depth)
+        return frame_message(WireFrame(wanted.number, frame.stamp, self._now(), frame.intrinsics, rgb, depth))
 
     def _note_step(self, now: float) -> None:
         self._stepped = now + _STEP, time.monotonic()  # the step that begins now ends this instant
@@ -173,6 +197,10 @@ class CameraServer:
 
 def _annotations(frame: SimFrame) -> tuple[Annotation, ...]:
     return tuple(Annotation(*instance) for instance in frame.instances)
+
+
+def _refusal(line: socket.socket, request: Message) -> Message:
+    return _failure(f"{_MOST_LINES} connections are open already (close a client)")
 
 
 def _failure(text: str) -> Message:

@@ -13,7 +13,7 @@ from zavis_bt.types import Footprint, RobotSpec
 _DIGITS = 9  # of angles in degrees: finer than any encoder
 
 
-def write_robot(path: Path, spec: RobotSpec, devices: Mapping[str, Mapping[str, Any]]) -> None:
+def write_robot_file(path: Path, spec: RobotSpec, devices: Mapping[str, Mapping[str, Any]]) -> None:
     """Write a robot file.
 
     Args:

@@ -18,6 +18,7 @@ PORT = 10940
 """Where sensors listen."""
 _CHUNK = 4096
 _PATIENCE = 16  # chunks that may lie before the end of a host that has gone
+_UNPLUGGED = 5000  # [ms] after which a host that takes nothing is given up
 
 
 class ScipServer:
@@ -137,6 +138,7 @@ class ScipServer:
         visitor.setblocking(False)
         with contextlib.suppress(OSError):
             visitor.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            visitor.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _UNPLUGGED)
         self._host = visitor
 
     def _hang_up(self) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import time
+from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +20,7 @@ NO_ECHO = 65533
 TOO_NEAR = 4
 """Range of a beam whose return is nearer than the sensor can measure; there are several such codes."""
 _BRIGHTEST = 4000  # echo strength of what is right before the sensor
+_SETTLING = 0.004  # that a step of the plant takes at most, unless the machine is loaded [s]
 _STALE = 0.2  # [s] without a step of the plant, after which its time stands still
 
 Numbers = NDArray[np.int32]
@@ -28,7 +31,7 @@ class Sweep:
     """One turn's measurement."""
 
     time: float
-    """When, by ``time.monotonic`` [s]."""
+    """When, by the clock [s]."""
     ranges: Numbers
     """(n,) of all steps [mm], or codes."""
 
@@ -36,9 +39,17 @@ class Sweep:
 class Eye:
     """Measures the plant's world; the same sweep for whoever asks within a turn."""
 
-    def __init__(self, plant: Plant, parameters: Parameters) -> None:
-        self._plant, self._parameters = plant, parameters
-        self._step = (0.0, -math.inf)  # the plant's time when it was last seen to step, and when that was
+    def __init__(self, plant: Plant, parameters: Parameters, clock: Callable[[], float] = time.monotonic) -> None:
+        """Look through the LiDAR of a robot.
+
+        Args:
+            plant: The robot.
+            parameters: Of the sensor.
+            clock: Real time [s].
+        """
+        self._plant, self._parameters, self._clock = plant, parameters, clock
+        self._noted = -math.inf  # when the plant was last seen to step
+        self._ahead: deque[float] = deque(maxlen=STEPS_PER_SECOND)  # of the clock before the plant's time, at each step
         self._last: tuple[int, Sweep] | None = None
         plant.controllers.append(self._note)
 
@@ -46,6 +57,14 @@ class Eye:
         """Look no more at the plant's steps; may be called twice."""
         if self._note in self._plant.controllers:
             self._plant.controllers.remove(self._note)
+
+    @property
+    def fresh(self) -> float:
+        """A moment at which the plant has just stepped, and so has all that are whole steps later [s].
+
+        A LiDAR that measures then does not see where the robot was up to a step ago.
+        """
+        return self._due(0.0) + _SETTLING
 
     def sweep(self, turn: int) -> Sweep:
         """Return the measurement of this turn."""
@@ -63,19 +82,21 @@ class Eye:
         millimetres = np.rint(np.minimum(metres * 1000, NO_ECHO)).astype(np.int32)
         millimetres[millimetres > sensor.dmax] = NO_ECHO
         millimetres[millimetres < sensor.dmin] = TOO_NEAR
-        return Sweep(self._time_of(begin), millimetres)
+        return Sweep(min(self._due(begin), self._clock()), millimetres)
 
-    def _time_of(self, plant_time: float) -> float:
-        """Return when the plant was where it is at ``plant_time`` [s]: it is due at a step's end, not when asked."""
-        seen, at = self._step
-        now = time.monotonic()
-        if now - at > _STALE:
+    def _due(self, plant_time: float) -> float:
+        """Return when the plant is to be at ``plant_time`` [s]: steps come late on a loaded machine, never early."""
+        now = self._clock()
+        if now - self._noted > _STALE:
             return now
-        return min(at + plant_time - seen, now)
+        return plant_time + min(tuple(self._ahead))
 
     def _note(self, now: float) -> None:
-        """Note that the plant is at ``now`` [s], and will next be one step further: that is due this moment."""
-        self._step = now + 1 / STEPS_PER_SECOND, time.monotonic()
+        """Note that the plant is at ``now`` [s], and is about to be one step further, which is due this moment."""
+        if now == 0.0:  # the first step is done before time begins to pass
+            return
+        self._noted = self._clock()
+        self._ahead.append(self._noted - (now + 1 / STEPS_PER_SECOND))
 
 
 def chosen(sweep: Sweep, request: ScanRequest, first_step: int) -> Numbers:

@@ -17,10 +17,10 @@ def model_of(spec: LidarSpec) -> Parameters:
     """Return the parameters of a sensor that sweeps the spec's field of view.
 
     Steps are as far apart as the spec's beams where a full turn is a whole number of them and one of them looks
-    straight ahead; else a half, a third or a quarter of that, whatever suits, and as near to it as whole steps can be
+    straight ahead; else a half, a third or a quarter of that, whatever suits, and about a half of it
     if nothing does.
     """
-    per_beam = next((n for n in range(1, _FINEST + 1) if _suits(spec, n)), 1)
+    per_beam = next((n for n in range(1, _FINEST + 1) if _suits(spec, n)), 2)
     ares = round(math.tau / spec.angle_increment * per_beam)
     whole_turn = spec.field_of_view >= math.tau - 1e-9
     half = min(math.floor(spec.field_of_view / 2 / (math.tau / ares) + _SLACK), _LAST_STEP // 2)

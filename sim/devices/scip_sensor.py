@@ -58,6 +58,7 @@ class Sensor:
         """
         self._parameters, self._eye, self._clock = parameters, eye, clock
         self._zero = clock() - uptime
+        self._rotor = self._zero  # when turn 0 began
         self._line = bytearray()
         self._reset()
 
@@ -87,7 +88,7 @@ class Sensor:
     @property
     def due(self) -> float | None:
         """When the next scan of a stream is to be sent, by the clock [s]; None without stream."""
-        return None if self._stream is None else self._zero + self._stream.turn * self._period
+        return None if self._stream is None else self._rotor + self._stream.turn * self._period
 
     def scan(self, *, send: bool = True) -> bytes:
         """Return the scan of a stream that is due, and go on to the next; without ``send`` it is left out."""
@@ -109,7 +110,7 @@ class Sensor:
         return 60 / self._parameters.scan / (1 - self._speed / 100)
 
     def _turn(self) -> int:
-        return math.floor((self._clock() - self._zero) / self._period + 1e-6)
+        return math.floor((self._clock() - self._rotor) / self._period + 1e-6)
 
     def _milliseconds(self, time: float) -> int:
         return int((time - self._zero) * 1000) % CLOCK_SPAN
@@ -167,6 +168,7 @@ class Sensor:
     def _begin(self, request: ScanRequest) -> tuple[str, bytes]:
         if self._timing:
             return "10", b""
+        self._rotor += (self._eye.fresh - self._rotor) % self._period
         self._stream = _Stream(request, self._turn() + 1, self._laser)
         self._laser = True
         return "00", b""

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from sim.devices.plant import Plant
-from sim.devices.robot_file import write_robot
+from sim.devices.robot_file import write_robot_file
 from zavis_bt.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from zavis_bt.types import Pose2D, RobotSpec
 
 _P3DX = ("p3dx", "pioneer3dx")  # how the names of robots begin that answer as a Pioneer 3-DX
+_DECELERATION = 1.0  # [m/s²] the base is asked for: a time-out then does not let it roll on for long
 
 
 class _Server(Protocol):
@@ -29,6 +30,11 @@ class _Server(Protocol):
 
     def start(self) -> None: ...
     def close(self) -> None: ...
+
+
+def _reached_at(host: str) -> str:
+    """Return where a program on this computer reaches what listens at ``host``."""
+    return "127.0.0.1" if host in ("", "0.0.0.0") else host
 
 
 def _own_channel() -> str:
@@ -50,6 +56,9 @@ class Places:
     """Kind of CAN bus, as python-can calls it."""
     can_channel: str = field(default_factory=_own_channel)
     """Its channel: a group for ``udp_multicast``, any name for ``virtual``."""
+    can_options: Mapping[str, Any] = field(default_factory=dict)
+    """Further arguments for python-can. Groups of ``udp_multicast`` on one computer hear one another unless their
+    ``port`` differs."""
 
 
 class SimulatedDevices:
@@ -94,7 +103,7 @@ class SimulatedDevices:
         self.plant = Plant(world, spec, start, seed, noise)
         firmware = Firmware(self.plant, P3DX if spec.name.startswith(_P3DX) else P3AT, watchdog=watchdog)
         self._makers = _makers(self.plant, at.host, firmware)
-        self.pan_tilt = Cia402Drives(self.plant, interface=at.can_interface, channel=at.can_channel)
+        self.pan_tilt = Cia402Drives(self.plant, interface=at.can_interface, channel=at.can_channel, **at.can_options)
         self.serial = ArcosPty(self.plant, firmware=firmware) if serial else None
         self._servers: dict[str, _Server] = {}
         try:
@@ -148,6 +157,13 @@ class SimulatedDevices:
         self._servers[kind] = self._makers[kind](self._servers[kind].port)
         self._servers[kind].start()
 
+    def clients(self) -> dict[str, int]:
+        """Return how many programs are connected to each line, as far as the line can tell."""
+        from sim.devices.arcos import Phase
+
+        connected = self.base.firmware.phase is Phase.CLOSE
+        return {"base": int(connected), "lidar": self.lidar.clients, "camera": self.camera.clients}
+
     def settings(self) -> dict[str, dict[str, Any]]:
         """Return the devices of a robot file that fits, by kind: ``driver`` and ``settings``."""
 
@@ -155,11 +171,14 @@ class SimulatedDevices:
             return {"driver": driver, "settings": settings}
 
         def port(kind: str) -> str:
-            return f"tcp://{self.places.host}:{self._servers[kind].port}"
+            return f"tcp://{_reached_at(self.places.host)}:{self._servers[kind].port}"
 
+        bus: dict[str, Any] = {"interface": self.places.can_interface, "channel": self.places.can_channel}
+        if self.places.can_options:
+            bus["options"] = dict(self.places.can_options)
         return {
-            "base": device("pioneer", port=port("base")),
-            "pan_tilt": device("cia402", interface=self.places.can_interface, channel=self.places.can_channel),
+            "base": device("pioneer", port=port("base"), deceleration=_DECELERATION),
+            "pan_tilt": device("cia402", **bus),
             "lidar": device("scip", port=port("lidar")),
             "camera": device("sim", port=port("camera")),
         }
@@ -181,7 +200,7 @@ class SimulatedDevices:
         for kind, further in (settings or {}).items():
             devices[kind]["settings"] |= further
         path = folder / "simulated.robot.yaml"
-        write_robot(path, self.plant.spec, devices)
+        write_robot_file(path, self.plant.spec, devices)
         return path
 
     def close(self) -> None:
@@ -203,12 +222,32 @@ class SimulatedDevices:
     def _start_pan_tilt(self) -> None:
         import can
 
+        place = f"CAN bus {self.places.can_interface} {self.places.can_channel}"
         try:
-            self.pan_tilt.start()
+            taken = self._roll_call()
+            if not taken:
+                self.pan_tilt.start()
         except (can.CanError, OSError, ImportError, ValueError) as error:  # whatever the bus is made of
-            place = f"CAN bus {self.places.can_interface}:{self.places.can_channel}"
             why = " ".join(str(error).split()) or type(error).__name__
             raise DeviceError(f"{place}: cannot be opened: {why} (is it up? choose another with --can)") from error
+        if taken:
+            raise DeviceError(
+                f"{place}: node {taken[0]} is there already (end the other simulator, or choose another bus with --can)"
+            )
+
+    def _roll_call(self) -> list[int]:
+        """Return which of our node numbers others have on a bus that is shared with other programs."""
+        import can
+
+        from sim.devices.can_roll_call import nodes_present
+
+        if self.places.can_interface == "virtual":
+            return []
+        places = self.places
+        options: dict[str, Any] = {"fd": False, "hop_limit": 0} if places.can_interface == "udp_multicast" else {}
+        options |= places.can_options
+        with can.Bus(interface=places.can_interface, channel=places.can_channel, **options) as bus:
+            return nodes_present(bus, self.pan_tilt.nodes.values())
 
 
 def _makers(plant: Plant, host: str, firmware: Any) -> Mapping[str, Callable[[int], _Server]]:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 
 from sim.frame import SimFrame
+
+KEPT = 600
+"""Pictures that can be looked at later, a minute of them at 10 Hz; they are poses, a picture is made when looked at."""
 
 
 class Shutter:
@@ -22,6 +26,7 @@ class Shutter:
         self._take, self._period = take, 1 / rate
         self._number, self._due = 0, 0.0
         self._frame: SimFrame | None = None
+        self._kept: deque[tuple[int, SimFrame]] = deque(maxlen=KEPT)
         self._guard, self._closed = threading.Lock(), threading.Event()
         self.frozen = False
         """Whether no more pictures are taken."""
@@ -47,6 +52,18 @@ class Shutter:
             if self._closed.wait(max(pause, 0.0)) or time.monotonic() >= until:
                 return self._number, None
 
+    def taken(self, number: int) -> SimFrame | None:
+        """Return an earlier picture, not rendered yet, or None if it is no longer kept."""
+        with self._guard:
+            frame = dict(self._kept).get(number)
+        return None if frame is None else frame.unrendered()
+
+    @property
+    def oldest(self) -> int:
+        """Number of the oldest picture that is kept; 0 if there is none."""
+        with self._guard:
+            return self._kept[0][0] if self._kept else 0
+
     def close(self) -> None:
         """Let all who wait go."""
         self._closed.set()
@@ -55,4 +72,5 @@ class Shutter:
         now = time.monotonic()
         if not self.frozen and now >= self._due:
             self._number, self._frame = self._number + 1, self._take()
+            self._kept.append((self._number, self._frame.unrendered()))  # only the latest one's pixels take up memory
             self._due = max(self._due + self._period, now)

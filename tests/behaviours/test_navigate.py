@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from scripted import Stage, viewpoint
@@ -50,3 +51,30 @@ def test_stopping_half_way_stops_the_base_and_clears_the_shown_path(stage):
     navigate.stop(Status.INVALID)
     assert stage.robot.twist == Twist2D()
     assert stage.journal.path is None
+
+
+def press_bumper(stage: Stage, pressed: bool) -> None:
+    stage.robot.base_state = replace(stage.robot.base_state, bumper=pressed)
+
+
+def test_a_base_that_runs_into_something_moves_away_from_it_and_goes_on(stage):
+    navigate = stage.setup(Navigate(goal=Pose2D(2.0, 0.0), yaw_tolerance=4.0))
+    while stage.robot.base_state.pose.x < 0.8:
+        stage.tick(navigate)
+    press_bumper(stage, True)
+    met = stage.robot.base_state.pose.x
+    while met - stage.robot.base_state.pose.x < 0.05:
+        assert stage.tick(navigate) is Status.RUNNING
+        assert stage.robot.twist.linear <= 0.0
+    press_bumper(stage, False)
+    assert stage.run(navigate) is Status.SUCCESS
+
+
+def test_a_base_that_cannot_get_free_does_not_try_for_ever(stage):
+    navigate = stage.setup(Navigate(goal=Pose2D(2.0, 0.0)))
+    for _ in range(10):
+        stage.tick(navigate)
+    press_bumper(stage, True)
+    stage.robot.held = True
+    assert stage.run(navigate) is Status.FAILURE
+    assert stage.robot.twist == Twist2D()

@@ -5,7 +5,7 @@
 ``hardware``  the robot of the file that the environment variable ``ZAVIS_HARDWARE`` names; left out if it is not set
 
 On hardware the claims that need to know where things really are, or that would drive far, are skipped. What is left
-turns and drives a few decimetres, at most 0.15 m/s and 0.4 rad/s, and pans by 20 degrees: put the robot on the floor
+turns and drives a few decimetres, at most 0.15 m/s and 0.4 rad/s, and pans by 40 degrees: put the robot on the floor
 with a metre of free space around it, keep a hand on the emergency stop, and run
 
     ZAVIS_HARDWARE=my.robot.yaml pytest tests/conformance -k hardware
@@ -24,6 +24,7 @@ import pytest
 from conformance_room import MIDDLE, ROBOT, room
 
 from sim import Simulation
+from sim.devices.serve import SimulatedDevices
 from zavis_bt.mission.clock import WallClock
 from zavis_bt.mission.device_robot import DeviceRobot
 from zavis_bt.mission.robot_file import load_robot
@@ -34,6 +35,8 @@ HARDWARE = os.environ.get("ZAVIS_HARDWARE", "")
 KINDS = ("lockstep", "wire", *(["hardware"] if HARDWARE else []))
 PERIOD = 0.1
 """Between two commands, as a mission gives them [s]."""
+_PATIENT = {"base": {"silence": 3.0}, "pan_tilt": {"answer_timeout": 3.0, "heartbeat_timeout": 3.0}}
+"""Settings of drivers that must not lose a device because the machine is busy."""
 PATIENCE = 20.0
 """How long to wait for what must happen [s]; in lock step this costs nothing."""
 
@@ -52,10 +55,8 @@ class Rig:
     """A speed for tests [m/s]."""
     spin: float = 0.8
     """A turning rate for tests [rad/s]."""
-    sweep: float = 0.8
+    sweep: float = 0.6
     """An angle for tests of the pan axis [rad]."""
-    latency: float = 0.0
-    """From a command to its effect in the state, at most [s]."""
     stale: float = 0.03
     """Age of a state that has just been read, at most [s]."""
     jump: float = 1e-6
@@ -97,6 +98,20 @@ class Rig:
             states.append(self.robot.base.state())
         return states
 
+    def reach(self, asked: Twist2D, expected: Twist2D | None = None) -> list[BaseState]:
+        """Command a velocity until the base has it, or the expected one; return the states on the way."""
+        states, wanted = [], expected or asked
+
+        def reached() -> bool:
+            self.robot.base.command(asked)
+            states.append(self.robot.base.state())
+            twist = states[-1].twist
+            linear, angular = abs(twist.linear - wanted.linear), abs(twist.angular - wanted.angular)
+            return linear <= self.linear_error and angular <= self.angular_error
+
+        assert self.wait_for(reached, PERIOD / 2), states[-1]
+        return states
+
     def wait_for(self, condition: Callable[[], bool], step: float = 0.02) -> bool:
         """Let time pass until the condition holds; return whether it came to that."""
         end = self.clock.now() + PATIENCE
@@ -118,7 +133,7 @@ class Rig:
         self.robot.base.stop()
         self.robot.pan_tilt.stop()
         heard = self.robot.base.state().stamp
-        assert self.wait_for(lambda: self.robot.base.state().stamp > heard + 0.15 or self.kind == "lockstep")
+        assert self.wait_for(lambda: self.robot.base.state().stamp > heard + 0.02 or self.kind == "lockstep")
         assert self.wait_for(self.stands)
         assert self.wait_for(self.settled)
 
@@ -138,22 +153,42 @@ def open_rig(kind: str, folder: Path, start: Pose2D = MIDDLE) -> Iterator[Rig]:
     """Open one robot, and close it again with whatever it stands in."""
     with ExitStack() as stack:
         rig = {"lockstep": _lockstep, "wire": _wire, "hardware": _hardware}[kind](stack, folder, start)
-        stack.callback(rig.robot.close)
         yield rig
 
 
 def _lockstep(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
     simulation = Simulation(room(), load_robot(_robot_file(folder)).spec, start)
+    stack.callback(simulation.robot.close)
     return Rig("lockstep", simulation.robot, simulation.clock, start, lambda: simulation.truth)
 
 
 def _wire(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
-    pytest.skip("no devices yet")
+    spec = load_robot(_robot_file(folder)).spec
+    devices = stack.enter_context(SimulatedDevices(room(), spec, start))
+    clock = WallClock()
+    robot = DeviceRobot(load_robot(devices.robot_file(folder, _PATIENT)), clock, start)
+    stack.callback(robot.close)
+    robot.wait_until_ready()
+    return Rig(
+        "wire",
+        robot,
+        clock,
+        start,
+        lambda: Pose2D(*devices.plant.motion.true),
+        stale=1.0,
+        jump=0.02,
+        slack=0.15,
+        linear_error=0.01,
+        angular_error=0.03,
+        angle_error=0.005,
+    )
 
 
 def _hardware(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
     clock, origin = WallClock(), Pose2D(0.0, 0.0)
     robot = DeviceRobot(load_robot(HARDWARE), clock, origin)
+    stack.callback(robot.close)
+    robot.wait_until_ready()
     return Rig(
         "hardware",
         robot,
@@ -162,7 +197,9 @@ def _hardware(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
         cruise=0.15,
         spin=0.4,
         sweep=0.35,
-        latency=0.5,
+        stale=0.5,
+        jump=0.03,
+        slack=0.15,
         linear_error=0.03,
         angular_error=0.1,
         angle_error=0.01,

@@ -33,8 +33,8 @@ MIDDLE = Pose2D(6.0, 5.0, 0.3)
 """Metres of free floor all around."""
 BY_THE_WALL = Pose2D(6.0, 0.4, 0.0)
 """The wall to the right is nearer than the LiDAR can measure, what lies ahead is farther."""
-BEFORE_A_WALL = Pose2D(WIDTH - 0.6, 5.0, 0.0)
-"""The outline is 0.35 m from the wall ahead."""
+BEFORE_A_WALL = Pose2D(WIDTH - 0.45, 5.0, 0.0)
+"""The outline is 0.2 m from the wall ahead."""
 FACING_THE_WALL = Pose2D(WIDTH - 3.0, 5.0, 0.0)
 
 ROBOT = """\
@@ -42,20 +42,20 @@ format: zavis-robot/1
 name: conformance
 footprint: {radius: 0.25}
 limits:
-  max_linear: 0.5
+  max_linear: 0.6
   max_reverse: 0.3
   max_angular_deg: 90
-  linear_acceleration: 0.5
-  angular_acceleration_deg: 180
+  linear_acceleration: 0.8
+  angular_acceleration_deg: 240
 lidar: {beams: 271, field_of_view_deg: 270, range_min: 0.5, range_max: 5, rate: 20, x: 0.1, height: 0.4}
 pan_tilt:
-  pan_min_deg: -120
-  pan_max_deg: 120
-  tilt_min_deg: -45
+  pan_min_deg: -75
+  pan_max_deg: 75
+  tilt_min_deg: -40
   tilt_max_deg: 30
-  max_rate_deg: 90
-  max_acceleration_deg: 360
-camera: {image: [64, 48], horizontal_fov_deg: 60, x: 0.05, height: 1.0, depth_min: 0.3, depth_max: 8, rate: 10}
+  max_rate_deg: 150
+  max_acceleration_deg: 900
+camera: {image: [64, 48], horizontal_fov_deg: 60, x: 0.05, height: 1.0, depth_min: 0.3, depth_max: 4, rate: 10}
 """
 
 

@@ -81,7 +81,7 @@ def test_without_a_fault_everything_passes_and_is_counted(proxy: ChaosProxy, dri
 
 def test_the_tap_hears_what_reaches_the_device(proxy: ChaosProxy, driver: socket.socket) -> None:
     heard: list[bytes] = []
-    proxy.tap = lambda stamp, data: heard.append(data)
+    proxy.tap = lambda stamp, number, data: heard.append(data)
     driver.sendall(b"go")
     assert receive(driver, 2) == b"".join(heard) == b"go"
 
@@ -110,7 +110,7 @@ def test_a_held_line_delivers_later(proxy: ChaosProxy, driver: socket.socket) ->
 
 def test_a_muted_device_hears_but_is_not_heard(proxy: ChaosProxy, driver: socket.socket) -> None:
     heard: list[bytes] = []
-    proxy.tap = lambda stamp, data: heard.append(data)
+    proxy.tap = lambda stamp, number, data: heard.append(data)
     proxy.mute()
     driver.sendall(b"there?")
     assert hears_nothing(driver)

@@ -63,11 +63,9 @@ def test_depth_is_within_the_cameras_range_or_zero_for_no_reading(rig: Rig) -> N
 
 
 def test_what_is_farther_than_the_camera_measures_has_no_depth(rig: Rig) -> None:
-    rig.truth()
-    before = rig.robot.base.state().pose.yaw
-    look(rig, 2.0, 0.0)  # towards the far corner
-    depth = latest(rig).depth
-    assert (depth == 0).any(), before
+    rig.only_simulated("needs to know how far it is")
+    look(rig, 1.0, 0.0)
+    assert (latest(rig).depth == 0).any()
 
 
 def test_depth_is_measured_along_the_optical_axis(rig: Rig) -> None:
@@ -96,7 +94,7 @@ def test_points_lie_where_the_room_is(rig: Rig) -> None:
 
 def test_the_pose_is_that_of_base_and_joints_at_the_stamp(rig: Rig) -> None:
     robot = rig.robot
-    for pan, tilt in ((0.0, 0.0), (rig.sweep, 0.2), (-rig.sweep, -0.3)):
+    for pan, tilt in ((0.0, 0.0), (-rig.sweep, -0.3)):
         look(rig, pan, tilt)
         frame = latest(rig)
         base, joints = robot.base.pose_at(frame.stamp), robot.pan_tilt.angles_at(frame.stamp)
@@ -109,7 +107,7 @@ def test_the_pose_is_that_at_the_stamp_while_everything_moves(rig: Rig) -> None:
     robot = rig.robot
     robot.pan_tilt.move_to(rig.sweep, 0.2)
     frames = []
-    for _ in range(8):
+    for _ in range(6):
         rig.drive(Twist2D(0.0, -rig.spin / 2), 0.1)
         frame = robot.camera.frame()
         assert frame is not None
@@ -117,7 +115,7 @@ def test_the_pose_is_that_at_the_stamp_while_everything_moves(rig: Rig) -> None:
         pose = transform_camera_to_map(base, *joints, robot.spec.camera)
         frames.append(float(np.abs(frame.transform_camera_to_map - pose).max()))
     assert np.median(frames) < 0.03
-    rig.drive(Twist2D(0.0, rig.spin / 2), 0.8)
+    rig.drive(Twist2D(0.0, rig.spin / 2), 0.6)
 
 
 def test_what_is_seen_moves_with_the_joints(rig: Rig) -> None:

@@ -41,12 +41,12 @@ def test_it_is_well_and_rests_within_its_limits(rig: Rig) -> None:
     assert rig.robot.pan_tilt.state().pan == pytest.approx(state.pan, abs=rig.angle_error)
 
 
-@pytest.mark.parametrize(("pan", "tilt"), [(1.0, 0.5), (-1.0, -0.5), (1.0, 0.0), (0.0, -0.5)])
+@pytest.mark.parametrize(("pan", "tilt"), [(1.0, 0.5), (-1.0, -0.5), (0.0, 0.5)])
 def test_both_axes_come_to_rest_at_their_targets(rig: Rig, pan: float, tilt: float) -> None:
     pan, tilt = pan * rig.sweep, tilt * rig.sweep
     state = move(rig, pan, tilt)[-1]
     assert (state.pan, state.tilt) == pytest.approx((pan, tilt), abs=rig.angle_error)
-    rig.run(0.2)
+    rig.run(0.15)
     state = rig.robot.pan_tilt.state()
     assert (state.pan, state.tilt) == pytest.approx((pan, tilt), abs=rig.angle_error)
 
@@ -79,15 +79,16 @@ def test_targets_are_clipped_to_the_limits(rig: Rig) -> None:
 
 
 def test_a_stop_on_the_way_ends_it_there(rig: Rig) -> None:
-    unit = rig.robot.pan_tilt
-    unit.move_to(rig.sweep, rig.sweep / 2)
-    assert rig.wait_for(lambda: unit.state().pan > 0.15 * rig.sweep)
+    unit, target = rig.robot.pan_tilt, 2 * rig.sweep
+    unit.move_to(target, rig.sweep / 2)
+    assert rig.wait_for(lambda: unit.state().pan > 0.05 * target)
     unit.stop()
     unit.stop()
     assert rig.wait_for(rig.settled)
-    rig.run(0.2)
+    rig.run(0.1)
     state = unit.state()
-    assert 0.1 * rig.sweep < state.pan < 0.95 * rig.sweep
+    # Acceleration and jerk are bounded, so that it comes to rest some way on.
+    assert 0.05 * target < state.pan < 0.85 * target
     rig.run(0.2)
     assert unit.state().pan == pytest.approx(state.pan, abs=rig.angle_error)
     assert move(rig, 0.0, 0.0)[-1].pan == pytest.approx(0.0, abs=rig.angle_error)
@@ -104,7 +105,7 @@ def test_a_stop_at_rest_changes_nothing(rig: Rig) -> None:
 
 def test_a_new_target_on_the_way_takes_over(rig: Rig) -> None:
     rig.robot.pan_tilt.move_to(rig.sweep, 0.2)
-    rig.run(0.15)
+    rig.run(0.1)
     state = move(rig, -rig.sweep / 2, -0.2)[-1]
     assert (state.pan, state.tilt) == pytest.approx((-rig.sweep / 2, -0.2), abs=rig.angle_error)
 
@@ -139,8 +140,8 @@ def test_the_angles_at_a_states_stamp_are_that_states_angles(rig: Rig) -> None:
 
 
 def test_the_angles_at_other_times_are_the_nearest_known(rig: Rig) -> None:
-    state = move(rig, rig.sweep / 2, 0.1)[-1]
-    rig.run(0.4)
+    state = move(rig, rig.sweep / 4, 0.1)[-1]
+    rig.run(0.1)
     assert rig.robot.pan_tilt.angles_at(1e6) == pytest.approx((state.pan, state.tilt), abs=2 * rig.angle_error)
     assert all(math.isfinite(angle) for angle in rig.robot.pan_tilt.angles_at(-1e6))
 
@@ -148,7 +149,7 @@ def test_the_angles_at_other_times_are_the_nearest_known(rig: Rig) -> None:
 def test_the_past_is_not_changed_by_a_new_target(rig: Rig) -> None:
     unit = rig.robot.pan_tilt
     unit.move_to(rig.sweep, 0.2)
-    rig.run(0.3)
+    rig.run(0.2)
     stamp = unit.state().stamp - 0.1
     before = unit.angles_at(stamp)
     unit.move_to(-rig.sweep, 0.0)

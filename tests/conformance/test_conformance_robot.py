@@ -24,15 +24,12 @@ def accept(robot: Robot, clock: Clock) -> tuple[RobotSpec, Base, PanTilt, Lidar,
     return robot.spec, robot.base, robot.pan_tilt, robot.lidar, robot.camera
 
 
-def test_its_devices_are_the_same_whenever_asked(rig: Rig) -> None:
-    for one, two in zip(accept(rig.robot, rig.clock), accept(rig.robot, rig.clock), strict=True):
-        assert one is two
-
-
-def test_its_devices_deliver_soon_after_it_is_opened(rig: Rig) -> None:
+def test_its_devices_deliver_soon_after_it_is_opened_and_stay_the_same(rig: Rig) -> None:
     robot = rig.robot
+    before = accept(robot, rig.clock)
     assert rig.wait_for(lambda: robot.lidar.scan() is not None and robot.camera.frame() is not None)
     assert robot.base.state().fault == robot.pan_tilt.state().fault == ""
+    assert all(one is two for one, two in zip(before, accept(robot, rig.clock), strict=True))
 
 
 def test_closing_ends_all_motion_and_may_be_done_twice(rig: Rig) -> None:

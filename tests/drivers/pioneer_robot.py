@@ -15,12 +15,14 @@ from drivers.pioneer.codec import (
     Command,
     CommandNumber,
     Config,
+    Encoders,
     Flags,
     Identity,
     PacketDecoder,
     Sip,
     decode_command,
     encode_config,
+    encode_encoders,
     encode_identity,
     encode_sip,
     encode_sync,
@@ -43,6 +45,8 @@ class ScriptedRobot:
         self.identity = Identity("tester", "Pioneer", subclass)
         self.config: Config | None = config or Config(subclass=subclass, watchdog=1000, serial_number="S1")
         self.sip = Sip(battery=125, battery_x10=125)
+        self.encoders: Encoders | None = None
+        """Sent with every SIP, if the client has asked for it."""
         self.period = period
         self.heard: list[tuple[float, Command]] = []
         """Commands since the start with their times; SYNCs are not among them."""
@@ -58,7 +62,7 @@ class ScriptedRobot:
         self.opened = False
         self._synced = False
         self._noise = b""
-        self._cut = threading.Event()
+        self._cut, self._gone = threading.Event(), threading.Event()
         self._ending = threading.Event()
         self._server = socket.create_server(("127.0.0.1", 0))
         self.port = self._server.getsockname()[1]
@@ -78,8 +82,10 @@ class ScriptedRobot:
         return f"tcp://127.0.0.1:{self.port}"
 
     def cut(self) -> None:
-        """Close the connection from this end."""
+        """Close the connection from this end; nothing is sent on it any more."""
+        self._gone.clear()
         self._cut.set()
+        assert self._gone.wait(PATIENCE)
 
     def add_noise(self, noise: bytes) -> None:
         """Send these bytes before the next SIP."""
@@ -105,6 +111,7 @@ class ScriptedRobot:
             with line, contextlib.suppress(OSError):
                 if not self.refuses:
                     self._serve(line)
+            self._gone.set()
 
     def _serve(self, line: socket.socket) -> None:
         line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -126,6 +133,8 @@ class ScriptedRobot:
                 due = time.monotonic() + self.period
                 noise, self._noise = self._noise, b""
                 line.sendall(noise + encode_sip(self.sip))
+                if self.encoders and NUMBER.ENCODER in self.numbers():
+                    line.sendall(encode_encoders(self.encoders))
 
     def _answer_sync(self, line: socket.socket, number: int) -> bool:
         self.syncs.append(number)

@@ -27,8 +27,14 @@ def test_commands_are_clipped_to_the_limits() -> None:
         base.command(Twist2D(-9.0, 9.0))
         assert wait_for(lambda: len(robot.velocities()) >= 2)
         assert {value for _, value in robot.velocities()} == {-400, 140}
-        base.command(Twist2D(math.nan, math.inf))
-        assert wait_for(lambda: robot.velocities()[-1][1] == 140 and robot.heard[-2][1].argument == 0)
+
+
+@pytest.mark.parametrize("twist", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf)], ids=str)
+def test_what_is_not_a_velocity_is_refused(twist: Twist2D) -> None:
+    with ScriptedRobot() as robot, opened(robot) as base:
+        with pytest.raises(ValueError, match="not a velocity"):
+            base.command(twist)
+        assert robot.velocities() == []
 
 
 def test_a_base_that_hears_no_command_any_more_is_halted() -> None:
@@ -77,6 +83,8 @@ def test_the_state_follows_the_robot() -> None:
         assert base.pose_at(state.stamp) == state.pose
         assert state.battery == pytest.approx(0.75)
         assert [state.bumper, state.stalled, state.estop] == [False] * 3
+        robot.sip = robot.sip._replace(left_velocity=0, right_velocity=0)
+        assert wait_for(lambda: base.state().twist.linear == 0)
 
 
 def test_bumper_stall_battery_and_sonar_are_told() -> None:

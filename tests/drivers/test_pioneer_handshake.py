@@ -79,7 +79,8 @@ def test_a_half_open_robot_is_shaken_loose(monkeypatch: pytest.MonkeyPatch) -> N
             assert robot.numbers()[0] == NUMBER.OPEN
 
 
-def test_a_robot_without_configuration_can_be_driven_and_is_reported() -> None:
+def test_a_robot_without_configuration_can_be_driven_and_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("drivers.pioneer.handshake._CONFIG_EVERY", 0.05)
     with ScriptedRobot() as robot:
         robot.config = None
         with opened(robot) as base:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers.pioneer.codec import ANGLE_STEPS, Sip
+from drivers.pioneer.codec import ANGLE_STEPS, Encoders, Sip
 from drivers.pioneer.models import Parameters, parameters_of
 from drivers.pioneer.odometry import Odometry, twist_of
 from zavis_bt.types import Pose2D
@@ -73,20 +73,57 @@ def test_a_jump_of_the_counters_moves_nothing_and_is_counted() -> None:
     assert (odometry.pose, odometry.jumps) == (START, 1)
 
 
-def test_after_an_absence_a_robot_that_kept_its_counters_is_where_they_say() -> None:
-    odometry = Odometry(Pose2D(0.0, 0.0))
-    odometry.update(Sip(x=1000), 0.0, P3AT)
-    odometry.resume()
-    assert odometry.update(Sip(x=1300), 2.0, P3AT).x == pytest.approx(0.3)
+TICKS = 138
 
 
-def test_after_an_absence_a_robot_that_zeroed_its_counters_is_where_it_was() -> None:
-    odometry = Odometry(Pose2D(0.0, 0.0))
-    odometry.update(Sip(x=1000, heading=500), 0.0, P3AT)
-    before = odometry.update(Sip(x=1050, heading=600), 0.1, P3AT)
+def ticks(way: float, turn: float) -> Encoders:
+    """What the encoders of a robot count that has driven so far and turned so much [m, rad]."""
+    half = turn / P3AT.difference_factor
+    return Encoders(round((way * 1000 - half) * TICKS), round((way * 1000 + half) * TICKS))
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-8, 8), st.integers(-(1 << 31), (1 << 31) - 1))
+def test_what_happened_while_the_link_was_lost_is_known_from_the_encoders(way: float, turn: float, first: int) -> None:
+    odometry, moved = Odometry(START), ticks(way, turn)
+    odometry.update(Sip(x=500, heading=77), 0.0, P3AT)
+    odometry.bridge(Encoders(first, -1), 0.0, P3AT, TICKS)
     odometry.resume()
-    assert odometry.update(Sip(), 2.0, P3AT) == before
-    assert odometry.update(Sip(heading=10), 2.1, P3AT).yaw == pytest.approx(before.yaw + 10 * math.tau / ANGLE_STEPS)
+    odometry.update(Sip(), 2.0, P3AT)
+    assert not odometry.settled
+    wrapped = (first + moved.left + (1 << 31)) % (1 << 32) - (1 << 31)
+    odometry.bridge(Encoders(wrapped, moved.right - 1), 2.0, P3AT, TICKS)
+    chord = way * math.sin(turn / 2) / (turn / 2) if abs(turn) > 1e-9 else way
+    towards = START.yaw + turn / 2
+    assert odometry.settled
+    assert odometry.pose.x == pytest.approx(START.x + chord * math.cos(towards), abs=1e-4)
+    assert odometry.pose.y == pytest.approx(START.y + chord * math.sin(towards), abs=1e-4)
+    assert math.remainder(odometry.pose.yaw - START.yaw - turn, math.tau) == pytest.approx(0, abs=1e-4)
+
+
+def test_a_new_connection_begins_where_the_old_one_ended_if_the_encoders_tell_nothing() -> None:
+    for packet in (None, Encoders(0, 0), Encoders(10**9, -(10**9))):  # none, switched off in between, impossible
+        odometry = Odometry(Pose2D(0.0, 0.0))
+        odometry.update(Sip(x=1000, heading=500), 0.0, P3AT)
+        before = odometry.update(Sip(x=1050, heading=600), 0.1, P3AT)
+        odometry.bridge(Encoders(7000, 8000), 0.1, P3AT, TICKS)
+        odometry.resume()
+        assert odometry.update(Sip(), 2.0, P3AT) == before
+        if packet:
+            odometry.bridge(packet, 2.0, P3AT, TICKS)
+        for i in range(6):
+            odometry.update(Sip(heading=10), 2.1 + i / 10, P3AT)
+        assert odometry.settled
+        assert odometry.pose.yaw == pytest.approx(before.yaw + 10 * math.tau / ANGLE_STEPS)
+        assert odometry.pose.distance(before) == 0
+
+
+def test_encoders_change_nothing_while_the_link_holds() -> None:
+    odometry = Odometry(START)
+    odometry.update(Sip(), 0.0, P3AT)
+    odometry.bridge(ticks(0, 0), 0.0, P3AT, TICKS)
+    odometry.bridge(ticks(0.1, 0.1), 0.1, P3AT, TICKS)
+    assert odometry.pose == START
+    assert odometry.settled
 
 
 @given(st.floats(-1, 1), st.floats(-2, 2))

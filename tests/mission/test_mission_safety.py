@@ -1,161 +1,281 @@
+"""Every hazard, and what is then sent to the base."""
+
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
-import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from safety_robot import DISC, RECTANGLE, REST, TICK, Body, Layer, square
 
-from zavis_bt.mission import MissionJournal, SafeRobot, SafetySettings
-from zavis_bt.mission.safety import free_distance
-from zavis_bt.types import (
-    BaseLimits,
-    BaseState,
-    CameraIntrinsics,
-    CameraSpec,
-    Footprint,
-    LaserScan,
-    LidarSpec,
-    PanTiltSpec,
-    Pose2D,
-    RobotSpec,
-    Twist2D,
-)
+from zavis_bt.mission import SafetySettings
+from zavis_bt.types import Twist2D
 
-SPEC = RobotSpec(
-    "test",
-    Footprint(0.36, 0.36, disc=True),
-    BaseLimits(0.6, 0.3, 1.8, 0.8, 3.0),
-    LidarSpec(360, math.tau, 0.05, 10.0, 10.0, Pose2D(0, 0), 0.3),
-    PanTiltSpec(-3.1, 3.1, -1, 1, 2, 8),
-    CameraSpec(CameraIntrinsics.from_fov(64, 48, 1.0), 0.0, 0.9, 0.3, 5.0, 30.0),
-)
+twists = st.builds(Twist2D, st.floats(-2, 2), st.floats(-4, 4))
+AHEAD = (2.0, -3.0, 2.0, 3.0)
 
 
-class Devices:
-    """A base that notes its commands and a LiDAR that sees a wall."""
-
-    spec = SPEC
-
-    def __init__(self, wall: float = math.inf) -> None:
-        self.sent: list[Twist2D | str] = []
-        self.current = BaseState(Pose2D(0, 0), Twist2D(), 0.0)
-        angles = SPEC.lidar.angle_min + SPEC.lidar.angle_increment * np.arange(360)
-        with np.errstate(divide="ignore"):
-            ranges = np.where(np.cos(angles) > 1e-6, wall / np.maximum(np.cos(angles), 1e-6), np.inf)
-        ranges = np.where(ranges < 10, ranges, np.inf)
-        self.latest: LaserScan | None = LaserScan(
-            ranges, SPEC.lidar.angle_min, SPEC.lidar.angle_increment, 0.05, 10.0, 0.0
-        )
-        self.base = self.lidar = self.pan_tilt = self.camera = self
-
-    def state(self) -> BaseState:
-        return self.current
-
-    def command(self, twist: Twist2D) -> None:
-        self.sent.append(twist)
-
-    def stop(self) -> None:
-        self.sent.append("stop")
-
-    def scan(self) -> LaserScan | None:
-        return self.latest
-
-    def close(self) -> None: ...
+def moving(body: Body, speed: float = 0.5, **settings: float) -> Layer:
+    """A base that has got to its speed."""
+    layer = Layer(body, **settings)
+    for _ in range(12):
+        layer.tick(Twist2D(speed, 0.0))
+    assert body.twist.linear == pytest.approx(speed)
+    return layer
 
 
-class Now:
-    def now(self) -> float:
-        return 0.0
-
-    def wait_until(self, stamp: float) -> None: ...
+def is_motion(sent: Twist2D | str) -> bool:
+    return sent not in ("stop", REST)
 
 
-def tick(devices: Devices, twist: Twist2D | None, now: float = 0.0) -> list[Twist2D | str]:
-    robot = SafeRobot(devices, SafetySettings(), MissionJournal(Now()))
-    robot.base.read()
-    if twist is not None:
-        robot.base.command(twist)
-    robot.base.flush(now)
-    return devices.sent
+# -- no hazard -------------------------------------------------------------------------------------------------------
 
 
-def test_free_way_passes_the_twist_unchanged():
-    assert tick(Devices(), Twist2D(0.5, 0.3)) == [Twist2D(0.5, 0.3)]
+@given(asked=twists)
+@settings(deadline=None)  # compiles at first
+def test_with_nothing_around_a_twist_within_the_limits_is_passed_on_unchanged(asked):
+    limits = Body().spec.limits
+    within = Twist2D(
+        min(max(asked.linear, -limits.max_reverse), limits.max_linear),
+        min(max(asked.angular, -limits.max_angular), limits.max_angular),
+    )
+    layer = Layer(Body())
+    assert layer.tick(asked) == [within]
+    assert layer.robot.base.reason == ""
 
 
-def test_speed_ahead_of_a_wall_leaves_room_to_brake():
-    (sent,) = tick(Devices(wall=0.4), Twist2D(0.6, 0.0))
-    assert 0 < sent.linear < 0.6
-    assert 0.18 + sent.linear**2 / (2 * 0.8) <= 0.4
+@pytest.mark.parametrize("twist", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf)])
+def test_a_twist_that_is_not_finite_is_refused_where_it_is_asked_for(twist):
+    layer = Layer(Body())
+    with pytest.raises(ValueError, match="is not a velocity"):
+        layer.tick(twist)
+    assert layer.body.sent == []
 
 
-def test_in_front_of_a_wall_it_may_turn_and_reverse_but_not_go_on():
-    assert tick(Devices(wall=0.19), Twist2D(0.5, 0.2)) == [Twist2D(0.0, 0.2)]
-    assert tick(Devices(wall=0.19), Twist2D(-0.2, 0.0)) == [Twist2D(-0.2, 0.0)]
+def test_a_tick_in_which_nobody_asks_slows_down_gently_until_the_base_stands():
+    layer = moving(Body())
+    ticks = 0
+    while layer.body.twist != REST:
+        assert layer.tick(None) == [REST]
+        ticks += 1
+    assert ticks == pytest.approx(0.5 / 0.8 / TICK, abs=1)
+    layer.tick(None)
+    assert layer.tick(None) == []
+
+
+def test_the_latest_request_of_a_tick_counts():
+    layer = Layer(Body())
+    layer.robot.base.command(Twist2D(0.5, 0.5))
+    assert layer.tick(Twist2D(0.1, 0.0)) == [Twist2D(0.1, 0.0)]
+
+
+def test_a_stop_is_passed_on_at_once_and_takes_back_what_was_asked_for():
+    layer = moving(Body())
+    layer.robot.base.command(Twist2D(0.5, 0.0))
+    layer.robot.base.stop()
+    assert layer.body.sent[-1] == "stop"
+    assert layer.tick(None) == []
+
+
+# -- reasons to stop as fast as possible ------------------------------------------------------------------------------
+
+HAZARDS = {
+    "emergency stop": ({"estop": True}, "emergency stop"),
+    "fault": ({"fault": "motors are off (press the motor button)"}, "motors are off (press the motor button)"),
+}
+
+
+@pytest.mark.parametrize("name", HAZARDS)
+def test_a_base_that_cannot_drive_is_stopped_hard_and_told_nothing_more(name):
+    says, reason = HAZARDS[name]
+    layer = moving(Body())
+    layer.body.says = says
+    assert layer.tick(Twist2D(0.5, 0.5)) == ["stop"]
+    assert layer.robot.base.reason == reason
+    assert [sent for _ in range(5) for sent in layer.tick(Twist2D(0.5, 0.5))] == []
+    layer.body.says = {}
+    assert layer.tick(Twist2D(0.2, 0.0)) == [Twist2D(0.2, 0.0)]
 
 
 @pytest.mark.parametrize(
-    "change",
-    [{"estop": True}, {"battery": 0.01}],
-    ids=["emergency stop", "flat battery"],
+    ("device", "reason"), [("lidar", "no recent LiDAR scan"), ("base", "the base is not heard of")]
 )
-def test_an_unfit_base_stands_still(change):
-    devices = Devices()
-    devices.current = replace(devices.current, **change)
-    assert tick(devices, Twist2D(0.5, 0.5)) == [Twist2D(0.0, 0.0)]
+def test_a_silent_device_stops_the_base_hard_when_its_age_limit_is_over(device, reason):
+    layer = moving(Body())
+    layer.body.silent = {device}
+    silent_for = 0.0
+    while "stop" not in layer.tick(Twist2D(0.5, 0.0)):
+        silent_for += TICK
+    assert silent_for <= SafetySettings().scan_timeout + TICK
+    assert layer.robot.base.reason == reason
+    assert not any(is_motion(sent) for _ in range(5) for sent in layer.tick(Twist2D(0.5, 0.0)))
+    layer.body.silent = set()
+    layer.body.hear()
+    assert layer.tick(Twist2D(0.2, 0.0)) == [Twist2D(0.2, 0.0)]
 
 
-def test_without_a_recent_scan_the_base_stands_still():
-    assert tick(Devices(), Twist2D(0.5, 0.0), now=2.0) == [Twist2D(0.0, 0.0)]
-    silent = Devices()
-    silent.latest = None
-    assert tick(silent, Twist2D(0.5, 0.0)) == [Twist2D(0.0, 0.0)]
+def test_without_any_scan_nothing_moves():
+    body = Body()
+    body.lidar.works = False
+    assert Layer(body).tick(Twist2D(0.5, 0.0)) == []
 
 
-@pytest.mark.parametrize("fault", ["bumper", "stalled"])
-def test_a_bump_allows_only_creeping_back(fault):
-    devices = Devices()
-    devices.current = replace(devices.current, **{fault: True})
-    assert tick(devices, Twist2D(0.5, 0.0)) == [Twist2D(0.0, 0.0)]
-    devices.sent.clear()
-    (sent,) = tick(devices, Twist2D(-0.5, 0.0))
-    assert -0.1 <= sent.linear < 0
+def test_an_old_scan_is_young_enough_for_a_slow_lidar():
+    layer = Layer(Body(), scan_timeout=0.1)  # 10 Hz: 2.5 periods
+    layer.body.silent = {"lidar"}
+    assert all(layer.tick(Twist2D(0.1, 0.0)) for _ in range(3))
+    assert layer.tick(Twist2D(0.1, 0.0)) == ["stop"]
 
 
-def test_a_tick_without_a_request_stops_a_moving_base_once():
-    devices = Devices()
-    robot = SafeRobot(devices, SafetySettings(), MissionJournal(Now()))
-    robot.base.read()
-    robot.base.command(Twist2D(0.2, 0.0))
-    robot.base.flush(0.0)
-    robot.base.flush(0.1)
-    robot.base.flush(0.2)
-    assert devices.sent == [Twist2D(0.2, 0.0), "stop"]
+def test_the_stop_is_repeated_while_the_base_still_moves():
+    layer = moving(Body())
+    layer.body.says = {"estop": True, "twist": Twist2D(0.3, 0.0)}
+    assert [layer.tick(None) for _ in range(3)] == [["stop"]] * 3
+
+
+# -- contact ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("switch", ["bumper", "stalled"])
+def test_contact_stops_hard_and_then_allows_only_creeping_away(switch):
+    layer = moving(Body())
+    layer.body.says = {switch: True}
+    assert layer.tick(Twist2D(0.5, 0.0)) == ["stop"]
+    assert layer.tick(Twist2D(0.5, 0.0)) == [REST]
+    assert layer.tick(Twist2D(-0.5, 0.0)) == [Twist2D(-0.1, 0.0)]
+    layer.body.says = {}
+    assert layer.tick(Twist2D(0.5, 0.0)) == [Twist2D(0.5, 0.0)]
+
+
+def test_contact_in_reverse_allows_only_creeping_forward():
+    layer = moving(Body(), speed=-0.3)
+    layer.body.says = {"bumper": True}
+    layer.tick(Twist2D(-0.3, 0.0))
+    assert layer.tick(Twist2D(-0.3, 0.0)) == [REST]
+    assert layer.tick(Twist2D(0.3, 0.0)) == [Twist2D(0.1, 0.0)]
+
+
+def test_with_contact_no_part_of_the_outline_turns_faster_than_creep():
+    body = Body(RECTANGLE)
+    body.says = {"stalled": True}
+    layer = Layer(body)
+    layer.tick(None)
+    ((turn),) = layer.tick(Twist2D(0.0, -1.5))
+    assert turn == Twist2D(0.0, pytest.approx(-0.1 / RECTANGLE.circumscribed_radius))
+
+
+def test_creeping_away_minds_obstacles_too():
+    body = Body(walls=[(-0.19, -1.0, -0.19, 1.0)])
+    body.says = {"bumper": True}
+    layer = Layer(body)
+    layer.tick(Twist2D(-0.1, 0.0))
+    assert layer.tick(Twist2D(-0.1, 0.0)) == [REST]
+
+
+# -- battery, pace ----------------------------------------------------------------------------------------------------
+
+
+def test_a_flat_battery_slows_down_gently():
+    layer = moving(Body())
+    layer.body.says = {"battery": 0.04}
+    assert layer.tick(Twist2D(0.5, 0.5)) == [REST]
+    assert layer.robot.base.reason == "battery at 4%"
+
+
+def test_a_tick_that_took_too_long_is_not_followed_by_motion():
+    layer = moving(Body())
+    layer.body.advance(0.4)
+    assert layer.tick(Twist2D(0.5, 0.0)) == [REST]
+    assert layer.robot.base.reason == "a tick took 0.5 s"
+    assert layer.tick(Twist2D(0.5, 0.0)) == [Twist2D(0.5, 0.0)]
+
+
+def test_ticks_that_keep_taking_too_long_leave_only_creeping_and_the_journal_says_so():
+    layer = moving(Body())
+    for _ in range(3):
+        layer.body.advance(0.4)
+        layer.tick(Twist2D(0.5, 0.0))
+    assert layer.tick(Twist2D(0.5, 0.2)) == [Twist2D(pytest.approx(0.1), pytest.approx(0.04))]
+    assert layer.reasons[-1] == "ticks take too long"
+    for _ in range(20):
+        layer.tick(Twist2D(0.1, 0.0))
+    assert layer.tick(Twist2D(0.5, 0.0)) == [Twist2D(0.5, 0.0)]
+
+
+def test_slower_ticks_need_more_room_to_brake():
+    allowed = []
+    for seconds in (TICK, 0.28):
+        body = Body(walls=[(0.45, -3.0, 0.45, 3.0)])
+        layer = Layer(body)
+        for _ in range(3):
+            layer.tick(Twist2D(0.0, 0.0), seconds)
+        (sent,) = layer.tick(Twist2D(0.7, 0.0), 0)
+        allowed.append(sent.linear)
+    assert 0 < allowed[1] < allowed[0] < 0.7
+
+
+# -- what the base raises ---------------------------------------------------------------------------------------------
+
+
+def test_what_the_base_raises_is_kept_and_ends_in_a_stop():
+    layer = Layer(Body())
+    layer.body.broken = {"base"}
+    assert layer.tick(Twist2D(0.5, 0.0)) == ["stop"]
+    assert layer.robot.base.trouble == "base: /dev/ttyUSB0 is gone (plug it in)"
+    layer.body.broken = set()
+    assert layer.tick(Twist2D(0.5, 0.0)) == [Twist2D(0.5, 0.0)]
+    assert layer.robot.base.trouble == ""
+
+
+def test_a_halted_robot_is_told_nothing_until_it_may_go_on():
+    layer = moving(Body())
+    layer.robot.halt()
+    assert layer.body.sent[-1] == "stop"
+    assert layer.body.moves == ["stop"]
+    assert [sent for _ in range(3) for sent in layer.tick(Twist2D(0.5, 0.0))] == []
+    layer.robot.resume()
+    assert layer.tick(Twist2D(0.5, 0.0)) == [Twist2D(0.5, 0.0)]
+
+
+def test_halting_stops_the_pan_tilt_unit_even_if_the_base_breaks_its_promise(caplog, monkeypatch):
+    layer = moving(Body())
+    monkeypatch.setattr(layer.body.base, "stop", lambda: 1 / 0)
+    layer.robot.halt()
+    assert layer.body.moves == ["stop"]
+    assert "ZeroDivisionError" in caplog.text
 
 
 def test_the_journal_tells_each_reason_once():
-    devices, journal = Devices(wall=0.19), MissionJournal(Now())
-    robot = SafeRobot(devices, SafetySettings(), journal)
+    body = Body(walls=[(0.19, -1.0, 0.19, 1.0)])
+    layer = Layer(body)
     for _ in range(5):
-        robot.base.read()
-        robot.base.command(Twist2D(0.5, 0.0))
-        robot.base.flush(0.0)
-    assert journal.counts["safety"] == 1
+        layer.tick(Twist2D(0.5, 0.0))
+    assert layer.reasons == ["obstacle ahead"]
+    assert layer.journal.counts["safety"] == 1
 
 
-@given(x=st.floats(-2, 2), y=st.floats(-2, 2), linear=st.sampled_from([-0.5, 0.5]), angular=st.floats(-0.8, 0.8))
-def test_free_distance_is_where_a_stepwise_drive_first_meets_the_point(x, y, linear, angular):
-    radius, step = 0.18, 0.002
-    assume(math.hypot(x, y) > radius + 0.02)
-    free = free_distance(np.array([[x, y]]), Twist2D(linear, angular), SPEC, tolerance=0.0)
-    horizon = min(1.5, 3.0 * abs(linear) / max(abs(angular), 1e-9))  # short of a full turn
-    turn_per_step = angular / abs(linear) * step
-    pose, travelled = Pose2D(0, 0), 0.0
-    while travelled < horizon and math.hypot(pose.x - x, pose.y - y) > radius:
-        pose = pose @ Pose2D(math.copysign(step, linear), 0.0, turn_per_step)
-        travelled += step
-    closest_miss = math.hypot(pose.x - x, pose.y - y) > radius
-    assert free >= travelled - 0.02 if closest_miss else free == pytest.approx(travelled, abs=0.03)
+# -- whatever is asked for --------------------------------------------------------------------------------------------
+
+DANGERS = [
+    {"says": {"estop": True}},
+    {"says": {"fault": "link lost"}},
+    {"says": {"battery": 0.01}},
+    {"silent": {"lidar"}},
+    {"silent": {"base"}},
+    {"broken": {"base"}},
+]
+
+
+@pytest.mark.parametrize("danger", DANGERS, ids=str)
+@given(asked=st.lists(st.none() | twists, min_size=6, max_size=10), footprint=st.sampled_from([DISC, RECTANGLE]))
+@settings(max_examples=10, deadline=None)
+def test_no_motion_is_sent_while_a_hazard_holds(danger, asked, footprint):
+    layer = Layer(Body(footprint, square(2.0)))
+    for twist in asked[:3]:
+        layer.tick(twist)
+    for name, value in danger.items():
+        setattr(layer.body, name, value)
+    for _ in range(3):  # silence takes until its age limit to be one
+        layer.tick(None)
+    assert not any(is_motion(sent) for twist in asked[3:] for sent in layer.tick(twist))

@@ -7,6 +7,7 @@ import pytest
 
 from drivers import builtin_robot, builtin_robots
 from zavis_bt.errors import InputError
+from zavis_bt.mission import SafetySettings
 from zavis_bt.mission.robot_file import DeviceSetting, load_robot
 
 
@@ -22,12 +23,42 @@ def write(tmp_path: Path):
     return write
 
 
-def test_every_built_in_profile_loads_and_leaves_its_devices_to_the_simulator() -> None:
-    assert builtin_robots() == ("locobot", "pioneer3at")
+def test_every_built_in_profile_loads() -> None:
+    assert {"locobot", "pioneer3at"} <= set(builtin_robots())
     for name in builtin_robots():
-        robot = load_robot(builtin_robot(name))
-        assert robot.spec.name == name
-        assert robot.devices == {}
+        assert load_robot(builtin_robot(name)).spec.name in (name, name.split("_")[0])
+
+
+def test_the_simulators_profiles_leave_their_devices_to_it() -> None:
+    for name in ("locobot", "pioneer3at"):
+        assert load_robot(builtin_robot(name)).devices == {}
+
+
+def test_without_a_safety_section_the_limits_are_the_usual_ones() -> None:
+    assert load_robot(builtin_robot("locobot")).safety == SafetySettings()
+
+
+def test_the_safety_section_sets_what_it_names(write) -> None:
+    path = write(more="safety: {margin: 0.1, turn_deceleration_deg: 180, scan_timeout: 0.4, device_timeout: 30}\n")
+    assert load_robot(path).safety == SafetySettings(
+        margin=0.1, turn_deceleration=math.pi, scan_timeout=0.4, device_timeout=30.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("section", "message"),
+    [
+        ("{margine: 0.1}", r"unknown key 'safety.margine' \(did you mean 'margin'\?\)"),
+        ("{creep: 0}", "safety.creep: should be greater than 0, not 0"),
+        ("{min_battery: 1.5}", "safety.min_battery: should be less than 1, not 1.5"),
+        ("{scan_timeout: .nan}", "safety.scan_timeout: should be"),
+        ("{tick_limit: 0.01}", "safety.tick_limit: should be greater than or equal to 0.05"),
+        ("fast", "safety: should be"),
+    ],
+)
+def test_a_fault_in_the_safety_section_is_named(write, section, message) -> None:
+    with pytest.raises(InputError, match=message):
+        load_robot(write(more=f"safety: {section}\n"))
 
 
 def test_degrees_become_radians() -> None:

@@ -185,3 +185,36 @@ def test_two_missions_after_each_other_do_not_leak(tmp_path: Path) -> None:
     assert one == two
     assert first.tree.namespace != second.tree.namespace
     assert first.tree.variables == second.tree.variables
+
+
+def test_a_hold_is_a_pause_that_somebody_else_decides(tmp_path: Path) -> None:
+    mission = bench(tmp_path, "act: {ticks: 4}")
+    turns: list[int] = []
+    changes: list[str] = []
+    runner = Runner(
+        mission.tree,
+        mission.clock,
+        after=[lambda: turns.append(runner.ticks)],
+        hold=lambda: 0.15 < mission.clock.time < 0.45,
+        on_pause=lambda: changes.append(f"held after {runner.ticks}"),
+        on_resume=lambda: changes.append(f"goes on after {runner.ticks}"),
+    )
+    assert runner.run().status is Status.SUCCESS
+    assert turns == [1, 2, 2, 2, 2, 3, 4]
+    assert changes == ["held after 2", "goes on after 2"]
+    assert not runner.paused
+
+
+def test_a_hold_inside_a_pause_changes_nothing_until_both_are_over(tmp_path: Path) -> None:
+    mission = bench(tmp_path, "act: {ticks: 3}")
+    changes: list[float] = []
+    runner = Runner(
+        mission.tree,
+        mission.clock,
+        after=[lambda: runner.pause() if mission.clock.time < 0.25 else runner.resume()],
+        hold=lambda: 0.15 < mission.clock.time < 0.55,
+        on_pause=lambda: changes.append(mission.clock.time),
+        on_resume=lambda: changes.append(mission.clock.time),
+    )
+    assert runner.run().status is Status.SUCCESS
+    assert changes == [pytest.approx(0.1), pytest.approx(0.6)]

@@ -10,14 +10,16 @@ from typing import Any, cast
 
 import numpy as np
 
-from zavis_bt.errors import ZavisError
+from zavis_bt.errors import DeviceError, ZavisError
 from zavis_bt.mission.device_robot import open_device
 from zavis_bt.mission.robot_file import RobotFile
 from zavis_bt.protocols import Base, Camera, Clock, Device, Lidar, PanTilt
-from zavis_bt.types import DeviceReport, LaserScan, RgbdFrame, RobotSpec
+from zavis_bt.types import LaserScan, RgbdFrame, RobotSpec
 
 _POLL = 0.004  # between two looks at a device [s]
 _SLOW = 0.8  # share of the rate in the robot file below which a sensor is too slow
+_ENOUGH = 5  # measurements to judge a rate by
+_USUAL_RATE = 10.0  # of devices for which the robot file has none [Hz]
 _LOW_BATTERY = 0.2
 _PATIENCE = 3.0  # so long a device may take to say its first word, beyond the time it is watched [s]
 
@@ -33,6 +35,7 @@ class Finding:
     serial: str = ""
     figures: Mapping[str, str] = field(default_factory=dict)
     problems: tuple[str, ...] = ()
+    opened: bool = True
 
     @property
     def ok(self) -> bool:
@@ -92,21 +95,18 @@ def examine(
     try:
         device = open_device(file, kind, clock)
     except ZavisError as error:
-        return Finding(kind, driver, problems=(_without_place(str(error), file, kind),))
+        return Finding(kind, driver, problems=(_without_place(str(error), file, kind),), opened=False)
     try:
         opened = f"{time.monotonic() - begin:.2f} s"
         watch = _watch(_READERS[kind](device), clock, seconds, progress)
-        problems = list(_problems(kind, device, watch, file.spec, seconds))
         report = device.report()
+        # its driver knows best; what can be seen from outside is said if the driver has nothing to say
+        problems = report.problems or tuple(_problems(kind, device, watch, file.spec, seconds))
     finally:
         device.close()
-    return _finding(kind, driver, report, {"opened in": opened, **watch.figures()}, problems)
-
-
-def _finding(kind: str, driver: str, report: DeviceReport, figures: Mapping[str, str], problems: list[str]) -> Finding:
-    everything = {**figures, **report.figures}
-    together = tuple(dict.fromkeys((*report.problems, *problems)))
-    return Finding(kind, driver, report.model, report.firmware, report.serial, everything, together)
+    figures = {"opened in": opened, **watch.figures(), **report.figures}
+    told = tuple(_without_place(problem, file, kind) for problem in problems)
+    return Finding(kind, driver, report.model, report.firmware, report.serial, figures, told)
 
 
 def _without_place(message: str, file: RobotFile, kind: str) -> str:
@@ -152,27 +152,23 @@ _READERS: Mapping[str, Callable[[Device], Callable[[], float | None]]] = {
 
 
 def _problems(kind: str, device: Any, watch: Watch, spec: RobotSpec, seconds: float) -> Iterator[str]:
-    if len(watch.stamps) < 2 and seconds > 0.5:
-        yield f"said {'nothing' if len(watch.stamps) == 0 else 'nothing new'} for {seconds:g} s"
+    promised = {"lidar": spec.lidar.rate, "camera": spec.camera.rate}.get(kind)
+    if len(watch.stamps) < 2 and seconds * (promised or _USUAL_RATE) >= _ENOUGH:
+        yield f"said nothing{' new' * bool(watch.stamps)} for {seconds:g} s"
+    if promised and len(watch.stamps) >= _ENOUGH and watch.rate < _SLOW * promised:
+        yield (
+            f"{watch.rate:.1f} Hz instead of the {promised:g} Hz of the robot file "
+            f"(is the line or this computer too slow? otherwise correct {kind}.rate)"
+        )
     match kind:
         case "base":
             yield from base_problems(device)
         case "pan_tilt":
             yield from pan_tilt_problems(device, spec)
         case "lidar":
-            yield from _rate_problems(watch, spec.lidar.rate, "lidar")
             yield from scan_problems(cast(Lidar, device).scan(), spec)
         case "camera":
-            yield from _rate_problems(watch, spec.camera.rate, "camera")
             yield from frame_problems(cast(Camera, device).frame(), spec)
-
-
-def _rate_problems(watch: Watch, promised: float, kind: str) -> Iterator[str]:
-    if 0 < watch.rate < _SLOW * promised:
-        yield (
-            f"{watch.rate:.1f} Hz instead of the {promised:g} Hz of the robot file "
-            f"(is the line or this computer too slow? otherwise correct {kind}.rate)"
-        )
 
 
 def base_problems(base: Base) -> Iterator[str]:
@@ -230,7 +226,11 @@ def frame_problems(frame: RgbdFrame | None, spec: RobotSpec) -> Iterator[str]:
     if frame is None:
         yield "no frame arrived"
         return
-    rgb, depth, wanted = frame.rgb, frame.depth, spec.camera.intrinsics
+    try:
+        rgb, depth, wanted = frame.rgb, frame.depth, spec.camera.intrinsics
+    except DeviceError as error:  # its pixels are fetched only now
+        yield str(error)
+        return
     height, width = rgb.shape[:2]
     if (width, height) != (wanted.width, wanted.height):
         said = f"{wanted.width} x {wanted.height}"

@@ -1,4 +1,4 @@
-"""What the computer must have for a robot's devices: packages, rights, ports, buses."""
+"""What the computer has for a robot's devices: packages, rights, ports, buses."""
 
 from __future__ import annotations
 
@@ -7,49 +7,25 @@ import grp
 import importlib.util
 import os
 import platform
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from zavis_bt.mission import RobotFile
-
-_PACKAGES = {"serial": "pyserial", "can": "python-can", "canopen": "canopen", "cv2": "opencv-python-headless"}
 _REALSENSE = "pyrealsense2"
 _NET = Path("/sys/class/net")
 _CAN_TYPE = "280"  # ARPHRD_CAN
 
 
-@dataclass(frozen=True, slots=True)
-class Computer:
-    """The computer as a robot's devices see it."""
-
-    figures: Mapping[str, str] = field(default_factory=dict)
-    problems: tuple[str, ...] = ()
-
-    @property
-    def ok(self) -> bool:
-        """Whether all is well."""
-        return not self.problems
-
-
-def look_at_computer(file: RobotFile | None) -> Computer:
-    """Return what this computer has, and what a robot's devices miss on it.
-
-    Args:
-        file: The robot; None looks at the computer alone.
-    """
+def look_at_computer() -> dict[str, str]:
+    """Return what this computer has for devices: names and values in words."""
     from zavis_bt import __version__
 
-    figures = {
+    realsense = importlib.util.find_spec(_REALSENSE) is not None
+    return {
         "zavis_bt": f"{__version__} on Python {platform.python_version()}, {platform.system()} {platform.machine()}",
         "serial ports": ", ".join(serial_ports()) or "none",
         "may use serial ports": "yes" if may_use_serial() else "no (sudo usermod -aG dialout $USER, then log in again)",
         "CAN interfaces": ", ".join(f"{name} ({state})" for name, state in can_interfaces().items()) or "none",
-        _REALSENSE: "installed" if _installed(_REALSENSE) else "not installed (pip install 'zavis_bt[robot]')",
+        _REALSENSE: "installed" if realsense else "not installed (only for RealSense: pip install 'zavis_bt[robot]')",
     }
-    return Computer(figures, () if file is None else tuple(_missing(file)))
 
 
 def serial_ports() -> list[str]:
@@ -84,30 +60,3 @@ def _read(path: Path) -> str:
         return path.read_text().strip()
     except OSError:  # interfaces come and go
         return ""
-
-
-def _installed(package: str) -> bool:
-    return importlib.util.find_spec(package) is not None
-
-
-def _missing(file: RobotFile) -> Iterator[str]:
-    for module, package in _PACKAGES.items():
-        if not _installed(module):
-            yield f"the package {package} is missing (pip install {package})"
-    devices = file.devices.values()
-    if any(device.driver == "realsense" for device in devices) and not _installed(_REALSENSE):
-        yield f"the package {_REALSENSE} is missing (pip install 'zavis_bt[robot]')"
-    ports = [str(device.settings.get("port", "")) for device in devices]
-    if any(port.startswith("/dev/tty") for port in ports) and not may_use_serial():
-        yield "this user may not use serial ports (sudo usermod -aG dialout $USER, then log in again)"
-    for device in devices:
-        if device.settings.get("interface") == "socketcan":
-            yield from _can_problem(str(device.settings.get("channel", "can0")))
-
-
-def _can_problem(name: str) -> Iterator[str]:
-    state = can_interfaces().get(name)
-    if state is None:
-        yield f"there is no CAN interface {name} (plug the adapter in; 'ip link' lists what is there)"
-    elif state == "down":
-        yield f"the CAN interface {name} is down (sudo ip link set {name} up type can bitrate 500000)"

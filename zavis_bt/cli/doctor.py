@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from zavis_bt.cli.checkup import Finding
-    from zavis_bt.cli.computer import Computer
     from zavis_bt.mission import RobotFile
+    from zavis_bt.protocols import Clock
 
+_BLIND = "was not moved: that needs a LiDAR that is well, to see that the way is free"
+_PATIENCE = 3.0  # so long a LiDAR may take to its first scan [s]
 _QUESTION = (
     "The camera will turn by 10° and back; the base will drive 10 cm ahead and back, and turn by 10° and back.\n"
     "Is the robot on the floor, the way free, and a hand on the emergency stop?"
@@ -40,7 +42,6 @@ def doctor(
     from rich.console import Console
 
     from zavis_bt.cli.computer import look_at_computer
-    from zavis_bt.cli.ending import signals_end
     from zavis_bt.cli.files import load_robot_file
 
     file = None if robot is None else load_robot_file(robot)
@@ -48,21 +49,21 @@ def doctor(
     if move:
         _ask()
     console = Console(highlight=False, quiet=as_json)
-    computer = look_at_computer(file)
-    _print_computer(computer, console)
+    computer = look_at_computer()
+    console.print("[bold]computer[/]")
+    _print_figures(computer.items(), console)
     findings: list[Finding] = []
-    with signals_end():
-        for kind in kinds:
-            assert file is not None
-            finding = _examined(file, kind, seconds, console)
-            findings.append(finding)
-            _print_finding(finding, console)
-        if move and file is not None:
-            findings = _moved(file, findings, console)
+    for kind in kinds:
+        assert file is not None
+        finding = _examined(file, kind, seconds, console)
+        findings.append(finding)
+        _print_finding(finding, console)
+    if move and file is not None:
+        findings = _moved(file, findings, console)
     if as_json:
         print(json.dumps(_as_data(robot, computer, findings)))
-    _print_summary(findings, computer, console)
-    if not (computer.ok and all(finding.ok for finding in findings)):
+    _print_summary(findings, console)
+    if not all(finding.ok for finding in findings):
         raise typer.Exit(1)
 
 
@@ -86,7 +87,7 @@ def _chosen(file: RobotFile, only: str | None) -> tuple[str, ...]:
 
 def _ask() -> None:
     try:
-        sure = typer.confirm(_QUESTION)
+        sure = typer.confirm(_QUESTION, err=True)
     except typer.Abort:
         sure = False
     if not sure:
@@ -102,37 +103,39 @@ def _examined(file: RobotFile, kind: str, seconds: float, console: Console) -> F
 
 
 def _moved(file: RobotFile, findings: Sequence[Finding], console: Console) -> list[Finding]:
-    """Move the devices that are well; return the findings with what came of it."""
-    well = {finding.kind for finding in findings if finding.ok}
+    """Move what could be opened; return the findings with what came of it."""
+    sees = any(finding.kind == "lidar" and finding.ok for finding in findings)
     after = []
     for finding in findings:
-        if finding.kind not in ("base", "pan_tilt") or finding.kind not in well:
-            after.append(finding)
-            continue
-        if finding.kind == "base" and "lidar" not in well:
-            problems = ["was not moved: that needs a LiDAR that is well, to see that the way is free"]
-        else:
-            console.print(f"moving {finding.kind} …")
-            problems = _trial(file, finding.kind)
-        after.append(replace(finding, problems=tuple(problems)))
-        console.print(*(_marks(problems) or ["  [bold green]✓[/] moves as it is told"]), sep="\n")
+        if finding.kind in ("base", "pan_tilt") and finding.opened:
+            console.print(f"\n[bold]moving {finding.kind}[/]")
+            problems = _trial(file, finding.kind) if finding.kind == "pan_tilt" or sees else [_BLIND]
+            console.print(*(_marks(problems) or ["  [bold green]✓[/] moves as it is told"]), sep="\n", soft_wrap=True)
+            finding = replace(finding, problems=(*finding.problems, *problems))
+        after.append(finding)
     return after
 
 
 def _trial(file: RobotFile, kind: str) -> list[str]:
     from zavis_bt.cli.motion_trial import BaseTrial, try_pan_tilt
-    from zavis_bt.cli.some_devices import SomeDevices
-    from zavis_bt.mission import SafetySettings, WallClock
+    from zavis_bt.mission import WallClock
+    from zavis_bt.mission.device_robot import DeviceRobot
 
     clock = WallClock()
     try:
-        with closing(SomeDevices(file, ("base", "lidar") if kind == "base" else (kind,), clock)) as robot:
-            clock.wait_until(clock.now() + 1.0)  # until both have spoken
+        with closing(DeviceRobot(file, clock, kinds=("base", "lidar") if kind == "base" else (kind,))) as robot:
             if kind == "base":
-                return BaseTrial(robot, SafetySettings(), clock).run()
+                _wait_for(lambda: robot.lidar.scan() is not None, clock)
+                return BaseTrial(robot, file.safety, clock).run()
             return try_pan_tilt(robot.pan_tilt, file.spec.pan_tilt, clock)
     except ZavisError as error:
         return [str(error)]
+
+
+def _wait_for(condition: Callable[[], bool], clock: Clock) -> None:
+    end = clock.now() + _PATIENCE
+    while not condition() and clock.now() < end:
+        clock.wait_until(clock.now() + 0.02)
 
 
 # -- output ----------------------------------------------------------------------------------------------------------
@@ -154,22 +157,17 @@ def _progress(kind: str, console: Console) -> Iterator[Callable[[float], None]]:
         yield lambda share: bar.update(task, completed=share, doing="watching …")
 
 
-def _print_computer(computer: Computer, console: Console) -> None:
-    console.print("[bold]computer[/]")
-    _print_figures(computer.figures.items(), console)
-    _print_end(computer.problems, console)
-
-
 def _print_finding(finding: Finding, console: Console) -> None:
     plate = [finding.model, finding.firmware and f"firmware {finding.firmware}"]
     plate.append(finding.serial and f"serial number {finding.serial}")
     name = ", ".join(part for part in plate if part)
     console.print(f"\n[bold]{finding.kind}[/]  [dim]driver {finding.driver or '-'}[/]  {_escaped(name)}")
     _print_figures(finding.figures.items(), console)
-    _print_end(finding.problems, console)
+    for line in _marks(finding.problems) or ["  [bold green]✓[/] well"]:
+        console.print(line, soft_wrap=True)
 
 
-def _print_figures(figures: Any, console: Console) -> None:
+def _print_figures(figures: Iterable[tuple[str, str]], console: Console) -> None:
     from rich.table import Table
 
     table = Table.grid(padding=(0, 2))
@@ -178,24 +176,19 @@ def _print_figures(figures: Any, console: Console) -> None:
     console.print(table)
 
 
-def _print_end(problems: Sequence[str], console: Console) -> None:
-    for line in _marks(problems) or ["  [bold green]✓[/] well"]:
-        console.print(line, soft_wrap=True)
-
-
 def _marks(problems: Sequence[str]) -> list[str]:
     return [f"  [bold red]✗[/] {_escaped(problem)}" for problem in problems]
 
 
-def _print_summary(findings: Sequence[Finding], computer: Computer, console: Console) -> None:
-    ill = [*([] if computer.ok else ["computer"]), *(finding.kind for finding in findings if not finding.ok)]
+def _print_summary(findings: Sequence[Finding], console: Console) -> None:
+    ill = [finding.kind for finding in findings if not finding.ok]
     if ill:
         console.print(f"\n[bold red]not well[/]: {', '.join(ill)}")
     elif findings:
-        count = len(findings)
-        console.print(f"\n[bold green]all well[/]: {count} device{'s' * (count != 1)} and the computer")
+        console.print(f"\n[bold green]all well[/]: {', '.join(finding.kind for finding in findings)}")
     else:
-        console.print("\nto check a robot's devices: zavis doctor --robot FILE  (e.g. --robot pioneer3at_sim)")
+        hint = "to check a robot's devices: zavis doctor --robot FILE  (e.g. --robot pioneer3at_sim)"
+        console.print(f"\n{hint}", soft_wrap=True)
 
 
 def _escaped(text: str) -> str:
@@ -204,10 +197,10 @@ def _escaped(text: str) -> str:
     return escape(text)
 
 
-def _as_data(robot: str | None, computer: Computer, findings: Sequence[Finding]) -> dict[str, Any]:
+def _as_data(robot: str | None, computer: Mapping[str, str], findings: Sequence[Finding]) -> dict[str, Any]:
     return {
         "robot": robot,
-        "ok": computer.ok and all(finding.ok for finding in findings),
-        "computer": {"ok": computer.ok, "figures": dict(computer.figures), "problems": computer.problems},
+        "ok": all(finding.ok for finding in findings),
+        "computer": computer,
         "devices": {finding.kind: {"ok": finding.ok, **asdict(finding)} for finding in findings},
     }

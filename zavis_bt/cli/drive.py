@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from zavis_bt.protocols import Clock, Robot
     from zavis_bt.types import Pose2D, Twist2D
 
+_HUNG_UP = 129  # exit code of what lost its terminal, as of SIGHUP
 _PERIOD = 0.05  # between two looks at the keys [s]
 _HELP = """\
   w s ↑ ↓   ahead, back           i k   camera up, down        + -   faster, slower
@@ -41,26 +43,31 @@ def drive(
 ) -> None:
     """Drive slowly with the keyboard; the base moves only while a key is held, and never into what the LiDAR sees."""
     from zavis_bt.cli.drive_view import DriveView
-    from zavis_bt.cli.ending import Ended, signals_end, undisturbed
+    from zavis_bt.cli.ending import Ended, undisturbed
     from zavis_bt.cli.files import load_robot_file
     from zavis_bt.cli.keyboard import Keyboard
     from zavis_bt.cli.teleop import Teleop
-    from zavis_bt.mission import SafetySettings
 
     file, keyboard = load_robot_file(robot), Keyboard()
     try:
-        with signals_end(), _opened(file, world, start) as (driven, clock, sees):
+        with _opened(file, world, start) as (driven, clock, sees):
             print(_HELP.format(hold=hold))
             teleop = Teleop(driven.spec.limits, hold)
-            with keyboard, DriveView(driven.spec) as view:
-                loop = Drive(driven, clock, teleop, SafetySettings(), looks=sees)
+            with keyboard, DriveView() as view:
+                loop = Drive(driven, clock, teleop, file.safety, looks=sees)
                 try:
                     loop.run(keyboard, view.show)
                 finally:
                     with undisturbed():
                         loop.halt()
-    except (Ended, EOFError):  # nobody may be left to read a word of it
-        raise typer.Exit(130) from None
+    except EOFError:
+        raise typer.Exit(_HUNG_UP) from None
+    except OSError as error:
+        if error.errno != errno.EIO:
+            raise
+        raise typer.Exit(_HUNG_UP) from None
+    except Ended as ended:  # nobody may be left to read a word of it
+        raise typer.Exit(ended.exit_code) from None
 
 
 class Drive:
@@ -81,12 +88,12 @@ class Drive:
         from zavis_bt.mission import MissionJournal, SafeRobot
 
         self.teleop, self.looks = teleop, looks
-        self.robot: SafeRobot = SafeRobot(robot, safety, MissionJournal(clock))
+        self.robot: SafeRobot = SafeRobot(robot, safety, MissionJournal(clock), _PERIOD)
         self.problem = ""
         """Why the latest command could not be given."""
         self.wanted: Twist2D | None = None
         """What the keys ask for; None to stand still."""
-        self._clock = clock
+        self._clock, self._held = clock, False
 
     @property
     def silent_for(self) -> float:
@@ -108,12 +115,13 @@ class Drive:
     def tick(self, keys: list[str]) -> None:
         """Read the robot, take the keys since the last tick, command it."""
         now = self._clock.now()
-        self.robot.base.read()
+        self.robot.base.read(now)
         try:
             looks = [look for key in keys if (look := self.teleop.press(key, now))]
             if looks and self.looks:
                 self._look(looks)
             self.wanted = self.teleop.twist(now)
+            self._hold_or_let_go()
             if self.wanted is not None:
                 self.robot.base.command(self.wanted)
             self.robot.base.flush(now)
@@ -126,6 +134,14 @@ class Drive:
         self.robot.base.stop()
         if self.looks:
             self.robot.pan_tilt.stop()
+
+    def _hold_or_let_go(self) -> None:
+        """Stop as fast as possible where a key says so, until one says to move again."""
+        if self.teleop.stop_now:
+            self.robot.base.hold()
+        elif self._held:
+            self.robot.base.resume()
+        self._held = self.teleop.stop_now
 
     def _look(self, looks: list[Look]) -> None:
         """Turn the camera on from where it is now, so that it stops soon after the key is released."""
@@ -141,8 +157,8 @@ class Drive:
 def _opened(file: RobotFile, world: str | None, start: str | None) -> Iterator[tuple[Robot, Clock, bool]]:
     """Yield the robot, its clock, and whether it has a pan-tilt unit."""
     from zavis_bt.cli.files import parse_start
-    from zavis_bt.cli.some_devices import SomeDevices
     from zavis_bt.mission import WallClock
+    from zavis_bt.mission.device_robot import DeviceRobot
 
     pose = None if start is None else parse_start(start)
     if not file.devices:
@@ -154,9 +170,9 @@ def _opened(file: RobotFile, world: str | None, start: str | None) -> Iterator[t
             raise InputError(f"{option}: {file.path} has devices of its own (leave it out)")
     kinds = [kind for kind in ("base", "lidar", "pan_tilt") if kind in file.devices or kind != "pan_tilt"]
     clock = WallClock()
-    devices = SomeDevices(file, kinds, clock, lambda kind: print(f"opening {kind} …", flush=True))
+    devices = DeviceRobot(file, clock, kinds=kinds, opening=lambda kind: print(f"opening {kind} …", flush=True))
     try:
-        yield devices, clock, "pan_tilt" in devices
+        yield devices, clock, "pan_tilt" in devices.devices
     finally:
         devices.close()
 

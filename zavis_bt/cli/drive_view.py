@@ -13,7 +13,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from zavis_bt.types import LaserScan, RobotSpec
+from zavis_bt.types import LaserScan
 
 if TYPE_CHECKING:
     from zavis_bt.cli.drive import Drive
@@ -25,9 +25,8 @@ _STALE = 1.0  # age of a state that is worth a word [s]
 class DriveView:
     """Shows pose, speed, battery, distance to obstacles and faults while somebody drives."""
 
-    def __init__(self, spec: RobotSpec, console: Console | None = None) -> None:
+    def __init__(self, console: Console | None = None) -> None:
         """Prepare to show; ``console`` is the terminal if not given."""
-        self._spec = spec
         self._live = Live(console=console or Console(highlight=False), auto_refresh=False)
         self._due = 0.0
 
@@ -92,14 +91,14 @@ def nearest(scan: LaserScan | None) -> str:
 
 def _faults(drive: Drive) -> list[str]:
     state = drive.robot.base.latest
-    found = [drive.problem, state.fault]
+    found = [drive.problem, state.fault or drive.robot.base.trouble]
     found += ["the emergency stop is pressed"] * state.estop
     found += ["a bumper is pressed: only slowly back"] * state.bumper
     found += ["a wheel is held fast: only slowly back"] * state.stalled
     if drive.silent_for > _STALE:
         found.append(f"the base has not been heard of for {drive.silent_for:.0f} s")
     if drive.looks:
-        found.append(drive.robot.pan_tilt.state().fault)
+        found.append(drive.robot.pan_tilt.state().fault or drive.robot.pan_tilt.trouble)
     return list(dict.fromkeys(fault for fault in found if fault))
 
 

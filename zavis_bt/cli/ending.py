@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, NoReturn
@@ -11,16 +12,23 @@ _ASKED = (signal.SIGTERM, signal.SIGHUP)
 
 
 class Ended(KeyboardInterrupt):
-    """A signal asked the program to end."""
+    """A signal asked the program to end; its argument is the signal's name."""
+
+    @property
+    def exit_code(self) -> int:
+        """What a shell says of a program that the signal ended."""
+        return 128 + signal.Signals[str(self)].value
 
 
 @contextmanager
 def signals_end() -> Iterator[None]:
     """Raise `Ended` where the program is when SIGTERM or SIGHUP arrives, as Ctrl-C raises KeyboardInterrupt.
 
-    So whatever moves is stopped by the same `finally` on every way out. Only for the main thread.
+    So whatever moves is stopped by the same `finally` on every way out, which further signals do not disturb. A signal
+    that is ignored already (nohup) stays ignored. Does nothing outside of the main thread, where no signal arrives.
     """
-    with _handled(_end, *_ASKED):
+    asked = [number for number in _ASKED if signal.getsignal(number) is not signal.SIG_IGN]
+    with _handled(_end, *asked):
         yield
 
 
@@ -33,6 +41,9 @@ def undisturbed() -> Iterator[None]:
 
 @contextmanager
 def _handled(handler: Any, *numbers: signal.Signals) -> Iterator[None]:
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
     before = {number: signal.signal(number, handler) for number in numbers}
     try:
         yield
@@ -42,4 +53,6 @@ def _handled(handler: Any, *numbers: signal.Signals) -> Iterator[None]:
 
 
 def _end(number: int, frame: Any) -> NoReturn:
+    for asked in _ASKED:
+        signal.signal(asked, signal.SIG_IGN)
     raise Ended(signal.Signals(number).name)

@@ -60,7 +60,7 @@ class Keyboard:
         Raises:
             InputError: It is not a terminal.
         """
-        self._fd = sys.stdin.fileno() if fd is None else fd
+        self._fd = _standard_input() if fd is None else fd
         self._rest = b""
         if not os.isatty(self._fd):
             raise InputError("the keyboard: standard input is not a terminal (run it in one, not through a pipe)")
@@ -98,3 +98,10 @@ class Keyboard:
             raise EOFError("the terminal has been closed")
         keys, self._rest = split_keys(self._rest + data)
         return keys
+
+
+def _standard_input() -> int:
+    try:
+        return sys.stdin.fileno()
+    except (OSError, ValueError, AttributeError):  # closed, or replaced by something that is no file
+        return -1

@@ -1,7 +1,8 @@
 """`zavis …`: the command line's root, and how its commands end.
 
 Exit codes: 0 done, 1 user error (one line, no traceback), 2 usage, 3 bug (traceback), 4 mission failed,
-130 interrupted.
+130 interrupted,
+143 or 129 ended by SIGTERM or SIGHUP, as orderly as by Ctrl-C.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ import typer
 from typer.core import TyperGroup
 
 from zavis_bt import __version__
-from zavis_bt.cli import bench, demo, doctor, drive, run, tree, world
+from zavis_bt.cli import bench, camera, demo, doctor, drive, run, sim, tree, world
+from zavis_bt.cli.ending import Ended, signals_end
 from zavis_bt.errors import ZavisError
 
 USER_ERROR, BUG, FAILED, INTERRUPTED = 1, 3, 4, 130
@@ -26,10 +28,14 @@ class Guarded(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         try:
-            return super().invoke(ctx)
+            with signals_end():
+                return super().invoke(ctx)
         except ZavisError as error:
             print(error, file=sys.stderr)
             raise typer.Exit(USER_ERROR) from None
+        except Ended as ended:
+            print(f"ended by {ended}", file=sys.stderr)
+            raise typer.Exit(ended.exit_code) from None
         except KeyboardInterrupt:
             print("interrupted", file=sys.stderr)
             raise typer.Exit(INTERRUPTED) from None
@@ -58,6 +64,8 @@ app.command("run")(run.run)
 app.command("bench")(bench.bench)
 app.command("doctor")(doctor.doctor)
 app.command("drive")(drive.drive)
+app.add_typer(camera.app, name="camera")
+app.add_typer(sim.app, name="sim")
 app.add_typer(tree.app, name="tree")
 app.add_typer(world.app, name="world")
 

@@ -13,6 +13,7 @@ WAY, TURN, NOD = 0.1, math.radians(10), math.radians(10)
 _SPEED, _TURNING = 0.1, 0.3  # [m/s], [rad/s]
 _PERIOD = 0.05  # [s]
 _PATIENCE = 5.0  # so long a motion may take [s]
+_HALT = 1.0  # so long the base may take to come to rest [s]
 _SHARE = 0.5  # of a motion that must at least be seen
 
 
@@ -59,7 +60,7 @@ class BaseTrial:
         journal = MissionJournal(clock)
         self._held_back: list[str] = []
         journal.sinks.append(lambda event: self._held_back.append(str(event.data.get("reason", event.kind))))
-        self._base = SafeRobot(robot, safety, journal).base
+        self._base = SafeRobot(robot, safety, journal, _PERIOD).base
         self._clock = clock
 
     def run(self) -> list[str]:
@@ -75,7 +76,7 @@ class BaseTrial:
             self._base.stop()
 
     def _move(self, what: str, twist: Twist2D, wanted: float) -> list[str]:
-        self._base.read()
+        self._base.read(self._clock.now())
         first = self._base.latest
         self._held_back.clear()
         end, done = self._clock.now() + _PATIENCE, 0.0
@@ -83,16 +84,26 @@ class BaseTrial:
             self._base.command(twist)
             self._base.flush(self._clock.now())
             self._clock.wait_until(self._clock.now() + _PERIOD)
-            self._base.read()
+            self._base.read(self._clock.now())
             done = _moved(first, self._base.latest, turning=twist.angular != 0)
         self._base.stop()
-        self._clock.wait_until(self._clock.now() + 0.5)
+        self._rest()
         if done < _SHARE * wanted:
             if self._held_back:
                 return [f"was told to {what} and was held back: {self._held_back[0]}"]
             share = done / wanted
             return [f"was told to {what} and did {share:.0%} of it (are the motors switched on, the wheels free?)"]
         return []
+
+    def _rest(self) -> None:
+        """Wait until the base stands."""
+        end = self._clock.now() + _HALT
+        while self._clock.now() < end:
+            self._clock.wait_until(self._clock.now() + _PERIOD)
+            twist = self._base.latest.twist
+            self._base.read(self._clock.now())
+            if twist == self._base.latest.twist == Twist2D():
+                return
 
 
 def _moved(first: BaseState, latest: BaseState, *, turning: bool) -> float:

@@ -79,7 +79,7 @@ def run(
         unknown=_names(unknown, DEFAULT_UNKNOWN_LANDMARKS),
         inputs=tree_inputs(path, assignments),
         real_time=real_time or bool(file.devices),
-        settings=MissionSettings(planner=planner, max_travel=max_travel, max_seconds=max_seconds),
+        settings=MissionSettings(planner=planner, max_travel=max_travel, max_seconds=max_seconds, safety=file.safety),
     )
     pose = None if start is None else parse_start(start)
     wanted = _wanted(target)

@@ -53,6 +53,8 @@ class Teleop:
         """Speed while a key is held [m/s]."""
         self.left = False
         """Whether a key to leave was pressed."""
+        self.stop_now = False
+        """Whether the latest key that was no wish to move or look asks to stop as fast as possible."""
         self._direction, self._heard = (0, 0), -math.inf
 
     @property
@@ -64,7 +66,7 @@ class Teleop:
         """Take a key that was heard of at ``now`` [s].
 
         Returns:
-            Where to turn the camera, if the key says so. A key without a meaning stops the base.
+            Where to turn the camera, if the key says so. A key without a meaning stops the base at once.
         """
         if key in FASTER or key in SLOWER:
             factor = _FACTOR if key in FASTER else 1 / _FACTOR
@@ -76,6 +78,7 @@ class Teleop:
         if key in LEVEL:
             return Look(0.0, 0.0, level=True)
         self.left |= key in LEAVE
+        self.stop_now = key not in DRIVE
         self._direction, self._heard = DRIVE.get(key, (0, 0)), now
         return None
 

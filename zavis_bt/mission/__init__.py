@@ -9,7 +9,7 @@ from zavis_bt.mission.journal import MissionJournal
 from zavis_bt.mission.mission import Mission
 from zavis_bt.mission.parts import Parts, Task
 from zavis_bt.mission.robot_file import RobotFile, load_robot
-from zavis_bt.mission.safety import SafeBase, SafeRobot, SafetySettings
+from zavis_bt.mission.safety import SafeBase, SafePanTilt, SafeRobot, SafetySettings
 from zavis_bt.mission.settings import MissionSettings, Search
 from zavis_bt.mission.spl import spl
 
@@ -25,6 +25,7 @@ __all__ = [
     "Parts",
     "RobotFile",
     "SafeBase",
+    "SafePanTilt",
     "SafeRobot",
     "SafetySettings",
     "Search",

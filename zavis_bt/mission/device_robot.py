@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, cast
 
@@ -22,13 +22,23 @@ _POLL = 0.02  # [s]
 class DeviceRobot:
     """A robot whose devices are played by drivers."""
 
-    def __init__(self, file: RobotFile, clock: Clock, start: Pose2D | None = None) -> None:
-        """Open all devices; if one fails, those opened before are closed again.
+    def __init__(
+        self,
+        file: RobotFile,
+        clock: Clock,
+        start: Pose2D | None = None,
+        *,
+        kinds: Iterable[str] = KINDS,
+        opening: Callable[[str], object] = str,
+    ) -> None:
+        """Open the devices; if one fails, those opened before are closed again.
 
         Args:
             file: The robot.
             clock: Of the mission; all stamps are on it.
             start: Where the robot stands in the map; the origin if not given.
+            kinds: Which devices; without the others, the camera's pose is the one it has when they are at rest.
+            opening: Told the kind of each device before it is opened.
 
         Raises:
             InputError: A device or a driver is missing, or a setting is wrong.
@@ -37,9 +47,10 @@ class DeviceRobot:
         self._file, self._clock, self._start = file, clock, start or Pose2D(0.0, 0.0)
         self.devices: dict[str, Device] = {}
         """By kind, in the order opened."""
-        factories = {kind: find_driver(file, kind) for kind in KINDS}
+        factories = {kind: find_driver(file, kind) for kind in kinds}
         try:
             for kind, factory in factories.items():
+                opening(kind)
                 self.devices[kind] = factory(file.devices[kind].settings, self._context(kind))
         except BaseException:
             self.close()
@@ -53,22 +64,22 @@ class DeviceRobot:
     @property
     def base(self) -> Base:
         """The mobile base."""
-        return cast(Base, self.devices["base"])
+        return cast(Base, self._device("base"))
 
     @property
     def pan_tilt(self) -> PanTilt:
         """The pan-tilt unit."""
-        return cast(PanTilt, self.devices["pan_tilt"])
+        return cast(PanTilt, self._device("pan_tilt"))
 
     @property
     def lidar(self) -> Lidar:
         """The LiDAR."""
-        return cast(Lidar, self.devices["lidar"])
+        return cast(Lidar, self._device("lidar"))
 
     @property
     def camera(self) -> Camera:
         """The camera on the pan-tilt unit."""
-        return cast(Camera, self.devices["camera"])
+        return cast(Camera, self._device("camera"))
 
     def wait_until_ready(self, timeout: float = 5.0) -> None:
         """Wait until every device has delivered something.
@@ -105,9 +116,15 @@ class DeviceRobot:
         where = f"{self._file.path}: devices.{kind}"
         return DeviceContext(where, self._file.spec, self._clock, self._start, self._camera_pose)
 
+    def _device(self, kind: str) -> Device:
+        if kind not in self.devices:
+            raise DeviceError(f"{self._file.path}: devices.{kind}: is not open")
+        return self.devices[kind]
+
     def _camera_pose(self, stamp: float) -> FloatArray:
-        pan, tilt = self.pan_tilt.angles_at(stamp)
-        return transform_camera_to_map(self.base.pose_at(stamp), pan, tilt, self._file.spec.camera)
+        base = self.base.pose_at(stamp) if "base" in self.devices else self._start
+        pan, tilt = self.pan_tilt.angles_at(stamp) if "pan_tilt" in self.devices else (0.0, 0.0)
+        return transform_camera_to_map(base, pan, tilt, self._file.spec.camera)
 
 
 def open_device(file: RobotFile, kind: str, clock: Clock) -> Device:
@@ -117,11 +134,7 @@ def open_device(file: RobotFile, kind: str, clock: Clock) -> Device:
         InputError: The device or its driver is missing, or a setting is wrong.
         DeviceError: It cannot be opened.
     """
-    spec = file.spec
-    level = transform_camera_to_map(Pose2D(0.0, 0.0), 0.0, 0.0, spec.camera)
-    where = f"{file.path}: devices.{kind}"
-    context = DeviceContext(where, spec, clock, Pose2D(0.0, 0.0), lambda stamp: level)
-    return cast(Device, find_driver(file, kind)(file.devices[kind].settings, context))
+    return DeviceRobot(file, clock, kinds=(kind,)).devices[kind]
 
 
 def find_driver(file: RobotFile, kind: str) -> DeviceFactory:

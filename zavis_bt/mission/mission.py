@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import logging
-import math
 import time
 from collections.abc import Callable
 
-import numpy as np
-
 from zavis_bt.mapping import Mapper, SemanticMap
 from zavis_bt.mission.dialogue import Dialogue
+from zavis_bt.mission.health import Health
 from zavis_bt.mission.journal import MissionJournal
+from zavis_bt.mission.odometer import Odometer
+from zavis_bt.mission.orderly_end import OrderlyEnd
 from zavis_bt.mission.parts import Parts, Task
 from zavis_bt.mission.safety import SafeRobot
 from zavis_bt.mission.settings import MissionSettings, Search
@@ -37,7 +37,6 @@ from zavis_bt.types import (
 )
 
 _LOG = logging.getLogger(__name__)
-_STEP = 0.02  # distance between recorded points of the trajectory [m]
 
 
 class Mission:
@@ -73,13 +72,16 @@ class Mission:
         self._parts, self._search, self._task, self._tree = parts, search, task, tree
         self._observers: list[Observer] = []
         self.journal = MissionJournal(parts.clock)
-        self._robot = SafeRobot(parts.robot, self._settings.safety, self.journal)
+        self._robot = SafeRobot(parts.robot, self._settings.safety, self.journal, 1 / self._settings.rate)
+        self._health = Health(self._robot, self._settings.safety, self.journal)
         self._mapper = Mapper(parts.robot.spec, self._settings.resolution)
-        self._trajectory: list[tuple[float, float]] = []
-        self._last_base: BaseState | None = None
-        self.path_length = 0.0
+        self._odometer = Odometer()
         navigator = Navigator(
-            parts.robot.spec, lambda: self._mapper.grid, planner=self._settings.planner, rng=parts.rng
+            parts.robot.spec,
+            lambda: self._mapper.grid,
+            planner=self._settings.planner,
+            rng=parts.rng,
+            smooth=self._settings.smooth,
         )
         perceiver = Perceiver(
             parts.detector,
@@ -107,29 +109,26 @@ class Mission:
             parts.clock,
             rate=self._settings.rate,
             before=[self._sense],
-            after=[self._drive, self._check_budget, self._show],
+            after=[lambda: self._robot.base.flush(parts.clock.now()), self._check_budget, self._show],
             on_exit=[self._robot.halt],
+            hold=lambda: not self._health.well,
             on_pause=self._robot.halt,
+            on_resume=self._robot.resume,
         )
 
     # -- the tick ------------------------------------------------------------------------------------------------
 
     def _sense(self) -> None:
-        self._robot.base.read()
-        state, scan = self._robot.base.latest, self._robot.base.scan
-        self._mapper.update(scan, state.pose if scan is None else self._robot.base.pose_at(scan.stamp))
-        if self._last_base is not None:
-            self.path_length += state.pose.distance(self._last_base.pose)
-        self._last_base = state
-        here = (state.pose.x, state.pose.y)
-        if not self._trajectory or math.dist(here, self._trajectory[-1]) >= _STEP:
-            self._trajectory.append(here)
-
-    def _drive(self) -> None:
-        self._robot.base.flush(self._parts.clock.now())
+        base = self._robot.base
+        base.read(self._parts.clock.now())
+        if self._health.check(self._parts.clock.now()):  # or who knows from where the scan was taken
+            self._mapper.update(base.scan, base.latest.pose if base.scan is None else base.pose_at(base.scan.stamp))
+            self._odometer.note(base.latest.pose)
 
     def _check_budget(self) -> None:
-        if self.path_length > self._settings.max_travel:
+        if given_up := self._health.given_up(self._parts.clock.now()):
+            self.runner.stop(given_up)
+        elif self._odometer.driven > self._settings.max_travel:
             self.runner.stop(f"not found within {self._settings.max_travel:g} m of travel")
         elif self._parts.clock.now() - self._started > self._settings.max_seconds:
             self.runner.stop(f"not found within {self._settings.max_seconds:g} s")
@@ -175,25 +174,27 @@ class Mission:
             How it went.
 
         Raises:
-            KeyboardInterrupt: The user pressed Ctrl-C; everything was stopped and recorded before.
+            KeyboardInterrupt: Ctrl-C, or what SIGTERM and SIGHUP raise; everything was stopped and recorded before.
         """
         wall_start = time.perf_counter()
         self._started = self._parts.clock.now()
-        self._robot.base.read()
-        self._notify(lambda observer: observer.on_start(self))
-        success, reason = False, "interrupted"
-        try:
-            outcome = self.runner.run()
-            success, reason = outcome.status == Status.SUCCESS, self._reason(outcome)
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            reason = f"crash: {type(error).__name__}: {error}"
-            raise
-        finally:
-            self._robot.halt()
-            result = self._result(success, reason, time.perf_counter() - wall_start)
-            self._notify(lambda observer: observer.on_end(self, result))
+        with OrderlyEnd(self.runner.stop) as end:
+            self._robot.base.read(self._started)
+            self._notify(lambda observer: observer.on_start(self))
+            success, reason = False, "interrupted"
+            try:
+                outcome = self.runner.run()
+                success, reason = outcome.status == Status.SUCCESS, self._reason(outcome)
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:
+                reason = f"crash: {type(error).__name__}: {error}"
+                raise
+            finally:
+                end.close()
+                self._robot.halt()
+                result = self._result(success, reason, time.perf_counter() - wall_start)
+                self._notify(lambda observer: observer.on_end(self, result))
         return result
 
     def _reason(self, outcome: Outcome) -> str:
@@ -208,8 +209,8 @@ class Mission:
             method=self._task.method,
             success=success,
             reason=reason,
-            spl=None if shortest is None else spl(success, self.path_length, shortest),
-            path_length=self.path_length,
+            spl=None if shortest is None else spl(success, self._odometer.driven, shortest),
+            path_length=self._odometer.driven,
             shortest_path_length=shortest,
             waypoints=counts["visit"],
             candidates=len(self.journal.candidates),
@@ -295,4 +296,4 @@ class Mission:
     @property
     def trajectory(self) -> FloatArray:
         """(n, 2) positions driven so far [m]."""
-        return np.array(self._trajectory, dtype=np.float64).reshape(-1, 2)
+        return self._odometer.trajectory

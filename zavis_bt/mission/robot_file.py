@@ -1,4 +1,4 @@
-"""Robot files: ``format: zavis-robot/1``, the robot's model and the devices that play it.
+"""Robot files: ``format: zavis-robot/1``, the robot's model, the devices that play it, and its safety limits.
 
 Lengths are in metres, angles in degrees under names that end in ``_deg``.
 """
@@ -15,6 +15,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 
 from zavis_bt.documents import check, read_document
 from zavis_bt.errors import InputError
+from zavis_bt.mission.safety import SafetySettings
 from zavis_bt.types import (
     BaseLimits,
     CameraIntrinsics,
@@ -31,7 +32,10 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Angle = Annotated[float, Field(allow_inf_nan=False), AfterValidator(math.radians)]
 PositiveAngle = Annotated[float, Field(gt=0, allow_inf_nan=False), AfterValidator(math.radians)]
 Text = Annotated[str, Field(min_length=1)]
+Timeout = Annotated[float, Field(ge=0.05, le=60)]
 DeviceName = Literal["base", "pan_tilt", "lidar", "camera"]
+
+_SAFETY = SafetySettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,8 @@ class RobotFile:
     devices: Mapping[str, DeviceSetting]
     """By device: ``base``, ``pan_tilt``, ``lidar``, ``camera``; empty for a robot that only the simulator plays."""
     path: Path
+    safety: SafetySettings = field(default_factory=SafetySettings)
+    """When motion is limited or refused."""
 
 
 class _Entry(BaseModel):
@@ -169,6 +175,25 @@ class _Device(_Entry):
     settings: dict[str, Any] = {}
 
 
+class _Safety(_Entry):
+    margin: Annotated[float, Field(ge=0, le=1)] = _SAFETY.margin
+    tolerance: Annotated[float, Field(ge=0, le=0.1)] = _SAFETY.tolerance
+    deceleration: Positive | None = None
+    turn_deceleration_deg: PositiveAngle | None = None
+    creep: Positive = _SAFETY.creep
+    min_battery: Annotated[float, Field(ge=0, lt=1)] = _SAFETY.min_battery
+    base_timeout: Timeout = _SAFETY.base_timeout
+    scan_timeout: Timeout = _SAFETY.scan_timeout
+    pan_tilt_timeout: Timeout = _SAFETY.pan_tilt_timeout
+    frame_timeout: Timeout = _SAFETY.frame_timeout
+    tick_limit: Timeout = _SAFETY.tick_limit
+    device_timeout: Annotated[float, Field(ge=1, le=3600)] = _SAFETY.device_timeout
+
+    def value(self) -> SafetySettings:
+        fields = self.model_dump()
+        return SafetySettings(turn_deceleration=fields.pop("turn_deceleration_deg"), **fields)
+
+
 class _RobotModel(_Entry):
     format: Literal["zavis-robot/1"]
     name: Text
@@ -178,6 +203,7 @@ class _RobotModel(_Entry):
     pan_tilt: _PanTilt
     camera: _Camera
     devices: dict[DeviceName, _Device] = {}
+    safety: _Safety = _Safety()
 
     def value(self) -> RobotSpec:
         return RobotSpec(
@@ -201,7 +227,7 @@ def load_robot(path: Path | str) -> RobotFile:
     if model is None:
         raise InputError(faults[0] + (f" [and {len(faults) - 1} more]" if len(faults) > 1 else ""))
     devices = {str(name): DeviceSetting(device.driver, device.settings) for name, device in model.devices.items()}
-    return RobotFile(model.value(), devices, document.path)
+    return RobotFile(model.value(), devices, document.path, model.safety.value())
 
 
 def _check_order(entry: _EntryT, *pairs: tuple[str, str]) -> _EntryT:

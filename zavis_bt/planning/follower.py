@@ -9,6 +9,7 @@ from enum import Enum, auto
 from zavis_bt.planning.costmap import Costmaps
 from zavis_bt.planning.dwa import NO_OBSTACLES, DwaPlanner
 from zavis_bt.planning.guide import Aim, Guide
+from zavis_bt.planning.shaping import TwistShaper
 from zavis_bt.planning.stall import StallWatch
 from zavis_bt.planning.track import Track
 from zavis_bt.types import BaseState, FloatArray, LaserScan, Path, Pose2D, RobotSpec, Twist2D
@@ -22,6 +23,7 @@ _TURN_EXACTLY = math.radians(4), math.radians(1)  # the same where the passage i
 _SETTLED = 0.06  # turning slower than this the base may drive into a narrow passage [rad/s]
 _PATH_AHEAD = 1.1  # so much of the path counts for how far motions are off it [m]
 _LAG = 0.3  # a base that gets to the commanded velocity within this time follows it [s]
+_PAUSE = 1.0  # without an update for so long the robot was held, and has not stood still by itself [s]
 _IDLE = 0.02  # motions slower than this lead nowhere [m/s], [rad/s]
 _AT_END = 0.03  # the end of the path counts as reached from here [m]
 
@@ -66,6 +68,7 @@ class PathFollower:
         *,
         tolerance: float = 0.1,
         yaw_tolerance: float | None = None,
+        shaper: TwistShaper | None = None,
     ) -> None:
         """Take the path.
 
@@ -76,7 +79,9 @@ class PathFollower:
             goal: Where to stand.
             tolerance: Accepted distance [m].
             yaw_tolerance: Accepted heading error [rad]; None if the heading does not matter.
+            shaper: Makes the commands smooth; None to command what the local planner chose.
         """
+        self._shaper = shaper
         self._limits, self._costmaps, self._goal = spec.limits, costmaps, goal
         self._tolerance, self._yaw_tolerance = tolerance, yaw_tolerance
         self._track, self._dwa, self._watch = Track(path), DwaPlanner(spec), StallWatch()
@@ -87,6 +92,7 @@ class PathFollower:
         self._escape = 0.0 if self._costmap.path_fits(self._track.points[:2]) else float(self._track.arc[1])
         self._last: BaseState | None = None
         self._command = Twist2D()
+        self._shaped: Twist2D | None = None
         self._turning = self._at_goal = False
         self._blocked_since: float | None = None
         self._driven = 0.0
@@ -113,7 +119,7 @@ class PathFollower:
         bearing = state.pose.bearing(*aim.target)
         if self._watch.stuck(state.stamp, state.pose, self._command, self._track.remaining, bearing):
             return self._end(FollowStatus.STUCK)
-        return self._go(FollowStatus.DRIVING, self._drive(state, scan, dt, aim, bearing), state.stamp)
+        return self._go(FollowStatus.DRIVING, self._drive(state, scan, dt, aim, bearing), state, dt)
 
     def _note(self, state: BaseState) -> float:
         """Sum up the way driven; return the time from command to command [s]."""
@@ -121,6 +127,8 @@ class PathFollower:
         if last is None:
             return _PERIOD
         self._driven += state.pose.distance(last.pose)
+        if state.stamp - last.stamp > _PAUSE:
+            self._watch, self._blocked_since, self._command = StallWatch(), None, Twist2D()
         return min(max(state.stamp - last.stamp, 0.02), 0.3)
 
     def _arrived(self, pose: Pose2D) -> bool:
@@ -137,7 +145,7 @@ class PathFollower:
             return self._end(FollowStatus.STUCK)
         obstacles = self._obstacles(state.pose, scan)
         twist = self._dwa.turn(state.pose, self._moving(state.twist), self._goal.yaw, self._costmap, dt, obstacles)
-        return self._go(FollowStatus.TURNING, twist, state.stamp)
+        return self._go(FollowStatus.TURNING, twist, state, dt)
 
     def _still_fits(self, stamp: float) -> bool:
         """Whether the rest of the path fits the current map; looked at when there is a new one."""
@@ -185,14 +193,23 @@ class PathFollower:
     def _obstacles(self, pose: Pose2D, scan: LaserScan | None) -> FloatArray:
         return NO_OBSTACLES if scan is None else self._dwa.obstacles(pose, scan, self._costmap)
 
-    def _go(self, status: FollowStatus, twist: Twist2D | None, stamp: float) -> Progress:
+    def _smooth(self, twist: Twist2D, measured: Twist2D, dt: float) -> Twist2D:
+        """Shape a command on from the last one, or from what the base does if it does not follow."""
+        if self._shaper is None:
+            return twist
+        if (moving := self._moving(measured)) is not self._shaped:
+            self._shaper.reset(moving)
+        self._shaped = self._shaper.shape(twist, dt)
+        return self._shaped
+
+    def _go(self, status: FollowStatus, twist: Twist2D | None, state: BaseState, dt: float) -> Progress:
         """Command the twist; without one stand still, and after a while say so."""
         if twist is not None:
-            self._blocked_since, self._command = None, twist
-            return Progress(twist, status, self._track.remaining, self._driven)
+            self._blocked_since, self._command = None, self._smooth(twist, state.twist, dt)
+            return Progress(self._command, status, self._track.remaining, self._driven)
         if self._blocked_since is None:
-            self._blocked_since = stamp
-        if stamp - self._blocked_since >= _PATIENCE:
+            self._blocked_since = state.stamp
+        if state.stamp - self._blocked_since >= _PATIENCE:
             return self._end(FollowStatus.BLOCKED)
         self._command = Twist2D()
         return Progress(self._command, status, self._track.remaining, self._driven)

@@ -12,6 +12,7 @@ from zavis_bt.planning.follower import PathFollower
 from zavis_bt.planning.geodesic import GeodesicField
 from zavis_bt.planning.planner import make_planner
 from zavis_bt.planning.recovery import free_distance
+from zavis_bt.planning.shaping import TwistShaper
 from zavis_bt.types import GridMap, Path, Pose2D, RobotSpec
 
 _FIELDS = 16  # fields that are kept
@@ -30,6 +31,7 @@ class Navigator:
         *,
         planner: str = "astar",
         rng: np.random.Generator | None = None,
+        smooth: bool = False,
     ) -> None:
         """Choose a planner.
 
@@ -38,11 +40,12 @@ class Navigator:
             grid: Returns the current map.
             planner: Name of the global planner.
             rng: Source of randomness for planners that need one; None for a generator of its own with a fixed seed.
+            smooth: Whether commands are limited in jerk.
 
         Raises:
             InputError: No such planner.
         """
-        self._spec, self._planner = spec, make_planner(planner)
+        self._spec, self._planner, self._smooth = spec, make_planner(planner), smooth
         self._rng = rng or np.random.default_rng(0)
         self._costmaps = Costmaps(grid, spec.footprint)
         self._fields: dict[tuple[float, float], GeodesicField] = {}
@@ -87,7 +90,10 @@ class Navigator:
             tolerance: Accepted distance [m].
             yaw_tolerance: Accepted heading error [rad]; None if the heading does not matter.
         """
-        return PathFollower(self._spec, self._costmaps, path, goal, tolerance=tolerance, yaw_tolerance=yaw_tolerance)
+        shaper = TwistShaper(self._spec.limits) if self._smooth else None
+        return PathFollower(
+            self._spec, self._costmaps, path, goal, tolerance=tolerance, yaw_tolerance=yaw_tolerance, shaper=shaper
+        )
 
     def can_turn(self, pose: Pose2D) -> bool:
         """Tell whether the robot can turn all around on the spot, as far as the map knows."""

@@ -37,7 +37,7 @@ class Runner:
     """Ticks a tree at a rate until it ends.
 
     A turn is: ``before`` hooks (read devices, update the map), the tree's tick, ``after`` hooks (safety, observers),
-    and waiting for the next turn. While paused, everything but the tick goes on.
+    and waiting for the next turn. While paused or held, everything but the tick goes on.
     """
 
     def __init__(
@@ -49,7 +49,9 @@ class Runner:
         before: Sequence[Hook] = (),
         after: Sequence[Hook] = (),
         on_exit: Sequence[Hook] = (),
+        hold: Callable[[], bool] = lambda: False,
         on_pause: Hook | None = None,
+        on_resume: Hook | None = None,
     ) -> None:
         """Prepare a run.
 
@@ -60,7 +62,9 @@ class Runner:
             before: Called before each tick.
             after: Called after each tick.
             on_exit: Called once at the end, however it comes, each whatever the others do.
-            on_pause: Called once when a pause begins, between ticks.
+            hold: Asked before each tick; while it says True the tree is held as in a pause.
+            on_pause: Called once when a pause or hold begins, between ticks.
+            on_resume: Called once before the first tick after it.
         """
         self.tree = tree
         self.ticks = 0
@@ -69,7 +73,8 @@ class Runner:
         self._clock = clock
         self._period = 1.0 / rate
         self._before, self._after = tuple(before), tuple(after)
-        self._on_exit, self._on_pause = tuple(on_exit), on_pause
+        self._on_exit, self._hold = tuple(on_exit), hold
+        self._on_pause, self._on_resume = on_pause, on_resume
         self._paused = threading.Event()
         self._lock = threading.Lock()
         self._stop_reason: str | None = None
@@ -77,7 +82,7 @@ class Runner:
 
     @property
     def paused(self) -> bool:
-        """Whether the tree is held."""
+        """Whether somebody has paused the tree."""
         return self._paused.is_set()
 
     def pause(self) -> None:
@@ -142,13 +147,14 @@ class Runner:
 
     def _turn(self, held: bool) -> bool:
         """Tick, or hold; return whether the tree is held."""
-        if not self._paused.is_set():
+        hold = self._paused.is_set() or self._hold()
+        change = self._on_pause if hold else self._on_resume
+        if hold is not held and change is not None:
+            change()
+        if not hold:
             self.tree.tick()
             self.ticks += 1
-            return False
-        if not held and self._on_pause is not None:
-            self._on_pause()
-        return True
+        return hold
 
     def _next_turn(self, start: float, turn: int) -> int:
         late = (self._clock.now() - start) / self._period - (turn + 1)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -86,11 +86,22 @@ class Box(NamedTuple):
         return common / union if union > 0 else 0.0
 
 
+class _OncePerFrame:
+    """A frame's images, made once. Frames do not wait for one another, as with a `cached_property` of Python 3.11."""
+
+    def __get__(self, frame: RgbdFrame, owner: type[RgbdFrame]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        with frame._guard:
+            if "_pixels" not in frame.__dict__:  # which is looked into first from now on
+                frame.__dict__["_pixels"] = frame._source()
+            made: tuple[NDArray[np.uint8], NDArray[np.float32]] = frame.__dict__["_pixels"]
+            return made
+
+
 class RgbdFrame:
     """A colour and depth image of one instant, with the camera's pose at that instant.
 
-    Pixels come from ``pixels`` when somebody first asks for them: a camera that renders or decodes does no work
-    for frames that are only passed on.
+    Pixels come from ``pixels`` when somebody first asks for them: a camera that renders, decodes or fetches does no
+    work for frames that are only passed on. Any thread may ask; whoever comes while another waits gets the same.
     """
 
     def __init__(
@@ -107,15 +118,15 @@ class RgbdFrame:
             transform_camera_to_map: (4, 4) homogeneous transform of optical camera points to the map, at capture.
             stamp: Time of capture on the mission's clock [s].
             pixels: Returns rgb (h, w, 3) uint8 and depth (h, w) float32 [m along the optical axis; 0 = no reading].
+                Called until it succeeds once; what it raises (`DeviceError`) goes to whoever asked.
         """
         self.intrinsics = intrinsics
         self.transform_camera_to_map = transform_camera_to_map
         self.stamp = stamp
         self._source = pixels
+        self._guard = threading.Lock()
 
-    @cached_property
-    def _pixels(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        return self._source()
+    _pixels = _OncePerFrame()
 
     @property
     def rgb(self) -> NDArray[np.uint8]:

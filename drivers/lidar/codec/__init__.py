@@ -4,7 +4,7 @@ from drivers.lidar.codec.answers import Answer, AnswerDecoder, encode_answer
 from drivers.lidar.codec.blocks import pack_block, unpack_block
 from drivers.lidar.codec.errors import CodecError
 from drivers.lidar.codec.information import Parameters, decode_information, encode_information
-from drivers.lidar.codec.lines import checksum, seal, seal_information, unseal
+from drivers.lidar.codec.lines import checksum, seal, seal_information, unseal, unseal_information
 from drivers.lidar.codec.numbers import (
     CLOCK_DIGITS,
     CLOCK_SPAN,
@@ -45,4 +45,5 @@ __all__ = [
     "seal_information",
     "unpack_block",
     "unseal",
+    "unseal_information",
 ]

@@ -7,12 +7,13 @@ from collections import deque
 from dataclasses import dataclass
 
 from drivers.lidar.codec.errors import CodecError
-from drivers.lidar.codec.lines import checksum, seal, unseal
+from drivers.lidar.codec.lines import checksum, seal, unseal, unseal_information
 from drivers.lidar.codec.requests import SCAN_COMMANDS
 from drivers.lidar.codec.scans import Readings, decode_readings
 
 _END = b"\n\n"
 _LIMIT = 1 << 17  # twice the longest answer: 9999 pairs of three characters each
+_INFORMATION = frozenset(("VV", "PP", "II"))
 _HEAD = re.compile(
     rb"\n?(VV|PP|II|BM|QT|RS|TM|SS|CR|HS|%ST|SCIP2\.0|[GM][DSE])([0-9]{0,13})(?:;[ -~]{0,16})?\n([0-9A-Z]{2})([0-o])\n"
 )
@@ -99,7 +100,8 @@ def _answer(head: re.Match[bytes]) -> Answer | None:
     try:
         if command in SCAN_COMMANDS and body:
             return Answer(echo, status.decode("ascii"), readings=decode_readings(command, body))
-        lines = tuple(unseal(line) for line in body.split(b"\n")[:-1])
+        content = unseal_information if command in _INFORMATION else unseal  # a semicolon may also be a digit
+        lines = tuple(content(line) for line in body.split(b"\n")[:-1])
     except CodecError:
         return None
     return Answer(echo, status.decode("ascii"), lines)

@@ -26,14 +26,24 @@ def seal_information(content: bytes) -> bytes:
 
 
 def unseal(line: bytes) -> bytes:
-    """Return the content of a line without line end; a semicolon before the check character may be counted or not.
+    """Return the content of a line without line end.
 
     Raises:
         CodecError: The check character is wrong, or there is none.
     """
-    content, given = line[:-1], line[-1:]
-    if content.endswith(b";") and given[0] in (checksum(content), checksum(content[:-1])):
-        return content[:-1]
-    if not content or checksum(content) != given[0]:
+    content = line[:-1]
+    if not content or checksum(content) != line[-1]:
         raise CodecError(f"wrong checksum: {line!r}")
     return content
+
+
+def unseal_information(line: bytes) -> bytes:
+    """Return the content of a line of VV, PP or II; the semicolon before the check character may be counted or not.
+
+    Raises:
+        CodecError: The check character is wrong, or there is none.
+    """
+    content = line[:-1]
+    if content.endswith(b";") and line[-1] == checksum(content[:-1]):
+        return content[:-1]
+    return unseal(line).removesuffix(b";")

@@ -59,11 +59,14 @@ def object_dictionary(node: int, *, units_per_degree: float = 1000.0, limits: tu
     return dictionary
 
 
-def export_eds(path: Path, node: int = 1, units_per_degree: float = 1000.0) -> None:
-    """Write the electronic data sheet of a drive."""
+def export_eds(path: Path, units_per_degree: float = 1000.0) -> None:
+    """Write the electronic data sheet of the drives; identifiers in it are relative to the node number."""
     from canopen import export_od
 
-    dictionary = object_dictionary(node, units_per_degree=units_per_degree)
+    dictionary = object_dictionary(0, units_per_degree=units_per_degree)
+    for variable in (dictionary[0x1014], *(dictionary[first + n][1] for first in (0x1400, 0x1800) for n in range(4))):
+        variable.default_raw = f"$NODEID+0x{variable.default:X}"
+    dictionary[0x60C2][2].default_raw = str(dictionary[0x60C2][2].default)  # canopen writes -3 as 0x-3
     with warnings.catch_warnings(), path.open("w", encoding="utf-8") as file:
         warnings.simplefilter("ignore", DeprecationWarning)  # canopen asks for the date in a way newer Pythons dislike
         export_od(dictionary, file, "eds")
@@ -98,7 +101,7 @@ def _entries(node: int, per_degree: float) -> tuple[_Entry, ...]:
         _Entry(0x6085, "Quick stop deceleration", _U32, degrees(720), "rw", True),
         _Entry(0x6098, "Homing method", _I8, 37),
         _Entry(0x609A, "Homing acceleration", _U32, degrees(90)),
-        _Entry(0x60C5, "Max acceleration", _U32, degrees(1440), "rw", True),
+        _Entry(0x60C5, "Max acceleration", _U32, degrees(4000), "rw", True),
         _Entry(0x60FF, "Target velocity", _I32, 0, "rw", True),
         _Entry(0x6502, "Supported drive modes", _U32, _MODES, "ro"),
     )

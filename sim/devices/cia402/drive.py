@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from typing import Any
 
@@ -22,6 +23,7 @@ from drivers.pan_tilt.objects import (
     POSITION,
     QUICK_STOP_OPTION,
     REMOTE,
+    SDO_ANSWER,
     STATUSWORD,
     SUPPORTED_MODES,
     TARGET_POSITION,
@@ -44,6 +46,7 @@ _HEARTBEAT_LOST = 0x8130
 _NMT_COMMANDS = (NMT_START, NMT_STOP, NMT_PRE_OPERATIONAL, NMT_RESET_NODE, NMT_RESET_COMMUNICATION)
 _COAST, _STAYS_FROM = 0, 5
 _BAD_VALUE = 0x0609_0030
+_OUT_OF_STEP = struct.pack("<BHBI", 0x80, 0, 0, 0x0504_0001)  # abort: command not valid
 
 
 class Drive:
@@ -98,7 +101,10 @@ class Drive:
     def on_sdo(self, data: bytes) -> None:
         """Take an SDO request."""
         if self.node.nmt.state != "STOPPED":
-            self.node.sdo.on_request(0, bytearray(data), 0.0)
+            try:
+                self.node.sdo.on_request(0, bytearray(data), 0.0)
+            except struct.error:  # the server cannot name the object of a transfer that was never begun
+                self.node.network.send_message(SDO_ANSWER + self.node.id, _OUT_OF_STEP)
             self._take_target()
 
     def on_pdo(self, identifier: int, data: bytes) -> None:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import math
+import os
+import socket
 import threading
 import time
 from collections.abc import Callable
@@ -24,6 +28,7 @@ _TICK = 0.01  # [s]
 _SWITCH, _STOP = math.radians(2), math.radians(4)  # limit switch and hard stop beyond the limits [rad]
 _NODE = 0x7F
 _FRAME = 8
+_IP_MULTICAST_ALL = 49  # of linux/in.h
 
 
 class Body(Protocol):
@@ -214,8 +219,14 @@ class Cia402Drives:
 def _open(options: dict[str, Any]) -> can.BusABC:
     import can
 
+    for library in ("can", "canopen"):  # they have much to say of foreign masters' mistakes
+        logging.getLogger(library).addHandler(logging.NullHandler())
     if options["interface"] == "udp_multicast":
-        options = {"fd": False, "hop_limit": 0, **options}
+        bus = can.Bus(**{"fd": False, "hop_limit": 0, **options})
+        # Linux would hand us what others send on other groups of the same port.
+        with contextlib.suppress(OSError), socket.socket(fileno=os.dup(bus.fileno())) as line:
+            line.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
+        return bus
     return can.Bus(**options)
 
 
