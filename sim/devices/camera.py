@@ -76,7 +76,9 @@ class CameraServer:
         return len(self._lines) - len(self._pixel_lines)
 
     def start(self) -> None:
-        """Answer."""
+        """Answer; the first picture is made before, so that no client waits for the compiler."""
+        first = self._plant.frame()
+        _ = first.rgb, first.instances
         self._threads[0].start()
 
     def freeze(self) -> None:
