@@ -34,7 +34,7 @@ def instances_named(world: World, text: str, similarity: Similarity) -> frozense
         Ids, none if nothing in the world is meant.
     """
     objects = (_Thing(thing.id, thing.category, thing.colour) for thing in world.objects)
-    furniture = (_Thing(piece.id, piece.category, None) for piece in world.furniture)
+    furniture = (_Thing(piece.id, piece.category, piece.colour) for piece in world.furniture)
     return _named(chain(objects, furniture), text, similarity)
 
 
