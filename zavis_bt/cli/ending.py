@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -30,6 +32,17 @@ def signals_end() -> Iterator[None]:
     asked = [number for number in _ASKED if signal.getsignal(number) is not signal.SIG_IGN]
     with _handled(_end, *asked):
         yield
+
+
+def say_last(text: str) -> None:
+    """Print a last line; a terminal that is gone takes nothing, and must not spoil the exit code."""
+    try:
+        print(text, file=sys.stderr, flush=True)
+        sys.stdout.flush()
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (1, 2):
+            os.dup2(nowhere, stream)
 
 
 @contextmanager

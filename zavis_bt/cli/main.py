@@ -16,7 +16,7 @@ from typer.core import TyperGroup
 
 from zavis_bt import __version__
 from zavis_bt.cli import bench, camera, demo, doctor, drive, run, sim, tree, world
-from zavis_bt.cli.ending import Ended, signals_end
+from zavis_bt.cli.ending import Ended, say_last, signals_end
 from zavis_bt.errors import ZavisError
 
 USER_ERROR, BUG, FAILED, INTERRUPTED = 1, 3, 4, 130
@@ -34,7 +34,7 @@ class Guarded(TyperGroup):
             print(error, file=sys.stderr)
             raise typer.Exit(USER_ERROR) from None
         except Ended as ended:
-            print(f"ended by {ended}", file=sys.stderr)
+            say_last(f"ended by {ended}")
             raise typer.Exit(ended.exit_code) from None
         except KeyboardInterrupt:
             print("interrupted", file=sys.stderr)
