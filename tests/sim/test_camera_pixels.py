@@ -55,6 +55,7 @@ def plant() -> Iterator[Plant]:
 def server(plant, gate) -> Iterator[CameraServer]:
     server = CameraServer(plant)
     server.start()
+    gate.rendered = 0  # but for the first picture, which it makes before anybody asks
     yield server
     gate.open.set()
     server.close()

@@ -43,7 +43,7 @@ def drive(
 ) -> None:
     """Drive slowly with the keyboard; the base moves only while a key is held, and never into what the LiDAR sees."""
     from zavis_bt.cli.drive_view import DriveView
-    from zavis_bt.cli.ending import Ended, undisturbed
+    from zavis_bt.cli.ending import Ended, drop_what_nobody_reads, undisturbed
     from zavis_bt.cli.files import load_robot_file
     from zavis_bt.cli.keyboard import Keyboard
     from zavis_bt.cli.teleop import Teleop
@@ -68,6 +68,8 @@ def drive(
         raise typer.Exit(_HUNG_UP) from None
     except Ended as ended:  # nobody may be left to read a word of it
         raise typer.Exit(ended.exit_code) from None
+    finally:
+        drop_what_nobody_reads()
 
 
 class Drive:

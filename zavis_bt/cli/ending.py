@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any, NoReturn
 
 _ASKED = (signal.SIGTERM, signal.SIGHUP)
@@ -22,7 +22,7 @@ class Ended(KeyboardInterrupt):
         return 128 + signal.Signals[str(self)].value
 
 
-@contextmanager
+@contextlib.contextmanager
 def signals_end() -> Iterator[None]:
     """Raise `Ended` where the program is when SIGTERM or SIGHUP arrives, as Ctrl-C raises KeyboardInterrupt.
 
@@ -35,24 +35,31 @@ def signals_end() -> Iterator[None]:
 
 
 def say_last(text: str) -> None:
-    """Print a last line; a terminal that is gone takes nothing, and must not spoil the exit code."""
-    try:
+    """Print a last line, as far as somebody is left to read it."""
+    with contextlib.suppress(OSError):
         print(text, file=sys.stderr, flush=True)
-        sys.stdout.flush()
+    drop_what_nobody_reads()
+
+
+def drop_what_nobody_reads() -> None:
+    """Let output end in nothing if the terminal is gone: what is left in buffers must not spoil the exit code."""
+    try:
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
     except OSError:
         nowhere = os.open(os.devnull, os.O_WRONLY)
-        for stream in (1, 2):
-            os.dup2(nowhere, stream)
+        for descriptor in (1, 2):
+            os.dup2(nowhere, descriptor)
 
 
-@contextmanager
+@contextlib.contextmanager
 def undisturbed() -> Iterator[None]:
     """Ignore Ctrl-C, SIGTERM and SIGHUP for as long as it takes to stop what moves. Only for the main thread."""
     with _handled(signal.SIG_IGN, signal.SIGINT, *_ASKED):
         yield
 
 
-@contextmanager
+@contextlib.contextmanager
 def _handled(handler: Any, *numbers: signal.Signals) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
