@@ -70,8 +70,9 @@ def explain(error: BaseException, settings: PanTiltSettings) -> str:
             return f"{name}: no such address (a multicast group such as 239.74.163.2, or a host's name)"
         if isinstance(cause, OSError) and cause.errno in _REMEDIES:
             return f"{name}: {_REMEDIES[cause.errno](settings)}"
-        if getattr(cause, "error_code", None) in _REMEDIES:
-            return f"{name}: {_REMEDIES[cause.error_code](settings)}"  # type: ignore[attr-defined]  # looked up just now
+        code = getattr(cause, "error_code", None)
+        if code in _REMEDIES:
+            return f"{name}: {_REMEDIES[code](settings)}"
         cause = cause.__cause__ or cause.__context__
     return f"{name}: {' '.join(str(error).split()) or type(error).__name__} (is the adapter's own library installed?)"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.appearance.shape import FRONT, MANTLE, Pattern, Shape, ball, box, legs, mirrored, rod, shape, tube
+from sim.appearance.shape import FRONT, MANTLE, Part, Pattern, Shape, ball, box, legs, mirrored, rod, shape, tube
 
 _WOODEN = {"body": ("oak", "pine", "walnut", "mahogany", "white", "black", "tan", "cream", "grey")}
 _WOOD = ("plain", "wood", "wood")
@@ -13,7 +13,7 @@ def _drawers(columns: int, rows: int) -> Pattern:
     return Pattern("drawers", "dark", (columns, rows), FRONT)
 
 
-def _handles(columns: int, rows: int, low: float, high: float) -> tuple:  # type: ignore[type-arg]  # of parts
+def _handles(columns: int, rows: int, low: float, high: float) -> tuple[Part, ...]:
     """Return handles on a front of drawers."""
     parts = []
     for column in range(columns):

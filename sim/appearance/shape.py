@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from sim.render_parts import BALL, CUBE, ROUND, TUBE
 
@@ -59,26 +59,26 @@ class Part:
     """0 to 1; None is that of its slot."""
 
 
-def box(x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, **more: object) -> Part:
+def box(x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, **more: Any) -> Part:
     """Return a block."""
-    return replace(Part(CUBE, x, y, z, paint, pattern), **more)  # type: ignore[arg-type]  # checked by replace
+    return replace(Part(CUBE, x, y, z, paint, pattern), **more)
 
 
-def ball(x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, **more: object) -> Part:
+def ball(x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, **more: Any) -> Part:
     """Return an ellipsoid."""
-    return replace(Part(BALL, x, y, z, paint, pattern), **more)  # type: ignore[arg-type]  # checked by replace
+    return replace(Part(BALL, x, y, z, paint, pattern), **more)
 
 
-def rod(x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, **more: object) -> Part:
+def rod(x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, **more: Any) -> Part:
     """Return a cylinder or a cone (``taper``)."""
-    return replace(Part(ROUND, x, y, z, paint, pattern), **more)  # type: ignore[arg-type]  # checked by replace
+    return replace(Part(ROUND, x, y, z, paint, pattern), **more)
 
 
 def tube(
-    x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, hole: float = 0.85, **more: object
+    x: Span, y: Span, z: Span, paint: str = "body", pattern: Pattern | None = None, hole: float = 0.85, **more: Any
 ) -> Part:
     """Return a cylinder or cone with a hole along its axis: a ring, a wall of a cup."""
-    return replace(Part(TUBE, x, y, z, paint, pattern, hole=hole), **more)  # type: ignore[arg-type]  # as above
+    return replace(Part(TUBE, x, y, z, paint, pattern, hole=hole), **more)
 
 
 def mirrored(part: Part, *axes: Literal["x", "y"]) -> tuple[Part, ...]:
@@ -135,10 +135,10 @@ class Shape:
     """Of the body, 0 to 1."""
 
 
-def shape(*variants: tuple[Part | tuple[Part, ...], ...], size: tuple[float, float, float], **more: object) -> Shape:
+def shape(*variants: tuple[Part | tuple[Part, ...], ...], size: tuple[float, float, float], **more: Any) -> Shape:
     """Return a shape; the variants' parts may come in groups."""
     flat = tuple(tuple(_flatten(parts)) for parts in variants)
-    return replace(Shape(flat, size), **more)  # type: ignore[arg-type]  # checked by replace
+    return replace(Shape(flat, size), **more)
 
 
 def _flatten(parts: tuple[Part | tuple[Part, ...], ...]) -> list[Part]:
