@@ -1,0 +1,151 @@
+"""Labelled images of random rooms, written as a COCO data set."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.appearance import SHAPES, CameraEffects, random_frame, random_scene
+from sim.frame import SimFrame
+from sim.render_labels import Label
+from zavis_bt.errors import InputError
+from zavis_bt.types import CameraIntrinsics
+
+_QUALITY = 92  # of the JPEG files
+_FRAMES_A_ROOM = 4
+_FILE = "annotations.json"
+_RENDERED = "rendered by zavis_bt's simulator"
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRecipe:
+    """What the images of a data set have in common."""
+
+    seed: int = 0
+    """Of all rooms and views; image k of a seed is the same in data sets of any length."""
+    width: int = 640
+    """Of the images [px]; their height is three quarters of it."""
+    horizontal_fov: float = math.radians(60)
+    """[rad]"""
+    distance: tuple[float, float] = (0.4, 4.0)
+    """Of the camera from the thing in the image's middle [m]."""
+    categories: tuple[str, ...] = tuple(SHAPES)
+    """What is in the rooms; a name that stands there twice is drawn twice as often."""
+    least_side: float = 12.0
+    """Things whose box is narrower are marked as not to be counted (``iscrowd``) [px]."""
+    least_visible: float = 0.2
+    """The same for things of which less is in sight [share]."""
+
+
+def write_frames(folder: Path, count: int, recipe: FrameRecipe, workers: int = 1) -> Iterator[int]:
+    """Write a data set: ``images/*.jpg`` and ``annotations.json`` in COCO's form.
+
+    Annotations have two fields more than COCO's: ``colour``, a basic colour's name or null, and
+    ``visible_fraction``. Images come with blur, noise and exposure of a camera.
+
+    Args:
+        folder: New or empty.
+        count: Number of images.
+        recipe: What they show.
+        workers: Processes.
+
+    Yields:
+        How many images are written, after each room.
+
+    Raises:
+        InputError: The folder holds something, a category is unknown, or a number is out of its range.
+    """
+    _check(folder, count, recipe)
+    (folder / "images").mkdir(parents=True, exist_ok=True)
+    rooms = range(math.ceil(count / _FRAMES_A_ROOM))
+    images: list[dict[str, Any]] = []
+    annotations: list[dict[str, Any]] = []
+    for written in _rooms(partial(_write_room, folder=folder, recipe=recipe, count=count), rooms, workers):
+        for image, labels in written:
+            images.append(image)
+            annotations += [{"id": len(annotations) + k + 1, **label} for k, label in enumerate(labels)]
+        yield len(images)
+    document = {
+        "info": {"description": f"random rooms, {_RENDERED}", "seed": recipe.seed, "rendered": True},
+        "images": images,
+        "annotations": annotations,
+        "categories": [{"id": number, "name": name} for name, number in _numbers().items()],
+    }
+    (folder / _FILE).write_text(json.dumps(document, separators=(",", ":")))
+
+
+def frames_of_room(recipe: FrameRecipe, room: int) -> Iterator[tuple[SimFrame, NDArray[np.uint8]]]:
+    """Yield the views of one random room: the frame, which knows its labels, and its image (h, w, 3) from the camera."""
+    rng = np.random.default_rng([recipe.seed, room])
+    scene = random_scene(rng, recipe.categories)
+    camera = CameraIntrinsics.from_fov(recipe.width, recipe.width * 3 // 4, recipe.horizontal_fov)
+    for _ in range(_FRAMES_A_ROOM):
+        frame = random_frame(rng, scene, camera, recipe.distance)
+        yield frame, CameraEffects.drawn(rng, recipe.width).apply(frame.rgb, rng)
+
+
+def _check(folder: Path, count: int, recipe: FrameRecipe) -> None:
+    if folder.is_dir() and any(folder.iterdir()):
+        raise InputError(f"{folder}: is not empty (name a new folder)")
+    if count < 1 or not 16 <= recipe.width <= 4096:
+        raise InputError(f"frames: {count} images of width {recipe.width} (at least 1, of 16 to 4096 px)")
+    strange = [name for name in recipe.categories if name not in SHAPES]
+    if strange or not recipe.categories:
+        raise InputError(f"frames: no category {', '.join(strange) or 'at all'} (see docs/appearance.md)")
+
+
+def _rooms(write: Any, rooms: range, workers: int) -> Iterable[list[tuple[dict[str, Any], list[dict[str, Any]]]]]:
+    if workers == 1:
+        yield from map(write, rooms)
+        return
+    with get_context("spawn").Pool(workers) as pool:
+        yield from pool.imap(write, rooms, chunksize=8)
+
+
+def _write_room(
+    room: int, *, folder: Path, recipe: FrameRecipe, count: int
+) -> list[tuple[dict[str, Any], list[dict[str, Any]]]]:
+    cv2.setNumThreads(1)
+    written = []
+    for view, (frame, rgb) in enumerate(frames_of_room(recipe, room)):
+        number = room * _FRAMES_A_ROOM + view
+        if number >= count:
+            break
+        name = f"{number:06d}.jpg"
+        cv2.imwrite(str(folder / "images" / name), rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
+        height, width = rgb.shape[:2]
+        image = {"id": number, "file_name": f"images/{name}", "width": width, "height": height}
+        written.append((image, [_annotation(label, number, recipe) for label in _worth_naming(frame.labels)]))
+    return written
+
+
+def _worth_naming(labels: Sequence[Label]) -> list[Label]:
+    return [label for label in labels if label.pixels >= 9 and label.category in SHAPES]
+
+
+def _annotation(label: Label, image: int, recipe: FrameRecipe) -> dict[str, Any]:
+    x0, y0, x1, y1 = label.box
+    hardly = min(x1 - x0, y1 - y0) < recipe.least_side or label.visible_fraction < recipe.least_visible
+    return {
+        "image_id": image,
+        "category_id": _numbers()[label.category],
+        "bbox": [x0, y0, x1 - x0, y1 - y0],
+        "area": label.pixels,
+        "iscrowd": int(hardly),
+        "colour": label.colour,
+        "visible_fraction": round(label.visible_fraction, 3),
+    }
+
+
+def _numbers() -> dict[str, int]:
+    return {name: number for number, name in enumerate(SHAPES, start=1)}
