@@ -77,17 +77,21 @@ def _lines(plan: FloorPlan) -> Iterable[str]:
         yield (
             f"  - {{id: {piece.id}, category: {piece.category}, x: {piece.x:.3f}, y: {piece.y:.3f}, "
             f"yaw_deg: {math.degrees(piece.yaw):g}, size: [{piece.length:.3f}, {piece.width:.3f}], "
-            f"height: {piece.height:.2f}}}"
+            f"height: {piece.height:.2f}{_paint(piece)}}}"
         )
     yield "objects:"
     for thing in plan.objects:
         size = ", ".join(f"{extent:.3f}" for extent in thing.size)
         on = f", on: {thing.on}" if thing.on else ""
-        colour = f", colour: {thing.colour}" if thing.colour else ""
         yield (
             f"  - {{id: {thing.id}, category: {thing.category}, x: {thing.x:.3f}, y: {thing.y:.3f}, z: {thing.z:.3f}, "
-            f"size: [{size}]{on}{colour}}}"
+            f"size: [{size}]{on}{_paint(thing)}}}"
         )
     yield "starts:                        # x, y, yaw_deg"
     for pose in plan.starts:
         yield f"  - [{pose.x:g}, {pose.y:g}, {math.degrees(pose.yaw):g}]"
+
+
+def _paint(thing: Furniture | WorldObject) -> str:
+    colour = f", colour: {thing.colour}" if thing.colour else ""
+    return colour + (f", appearance: {thing.appearance}" if thing.appearance is not None else "")

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,15 @@ def test_the_files_are_what_is_drawn(plan, tmp_path: Path) -> None:
     for suffix in (".world.yaml", ".yaml", ".pgm"):
         drawn, kept = tmp_path / f"{plan.name}{suffix}", builtin_world(plan.name).parent / f"{plan.name}{suffix}"
         assert drawn.read_bytes() == kept.read_bytes()
+
+
+def test_colours_and_looks_survive_writing_and_reading(tmp_path: Path) -> None:
+    plan = flat()
+    desk, mug = replace(plan.furniture[0], colour="white", appearance=3), replace(plan.objects[0], colour="red")
+    plan = replace(plan, furniture=(desk, *plan.furniture[1:]), objects=(mug, *plan.objects[1:]))
+    world = load_world(write_world(plan, tmp_path))
+    assert (world.furniture[0].colour, world.furniture[0].appearance) == ("white", 3)
+    assert (world.objects[0].colour, world.objects[0].appearance) == ("red", None)
 
 
 @pytest.mark.parametrize("name", ["apartment", "flat"])
