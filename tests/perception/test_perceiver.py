@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from perception_scene import ScriptedDetector, ScriptedMatcher, box_around, frame_of, unknown
 
 from zavis_bt.errors import InputError
-from zavis_bt.perception import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS, Perceiver
+from zavis_bt.perception import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS, Perceiver, Thresholds
 from zavis_bt.perception.perceiver import softmax
 from zavis_bt.types import UNKNOWN_CLASS, Box, Candidate, Detection, Landmark, Percept, entropy
 
@@ -21,10 +21,22 @@ DESK_BOX, SOFA_BOX, MUG_BOX = (box_around(solid, FRAME) for solid in (DESK, SOFA
 NAMES = ("bed", "desk", "armchair")
 
 
-def perceive(matcher: ScriptedMatcher, *detections: Detection, target: str = "mug", **settings: float) -> Percept:
-    return Perceiver(ScriptedDetector(*detections), matcher, known=("sofa",), unknown=NAMES, **settings).perceive(
-        FRAME, target
+def perceive(
+    matcher: ScriptedMatcher,
+    *detections: Detection,
+    target: str = "mug",
+    min_landmark_size: float = 0.25,
+    **thresholds: float,
+) -> Percept:
+    perceiver = Perceiver(
+        ScriptedDetector(*detections),
+        matcher,
+        known=("sofa",),
+        unknown=NAMES,
+        thresholds=Thresholds(**thresholds),
+        min_landmark_size=min_landmark_size,
     )
+    return perceiver.perceive(FRAME, target)
 
 
 def sofa(box: Box = SOFA_BOX, score: float = 0.9) -> Detection:
@@ -242,8 +254,8 @@ def test_scores_of_the_wrong_shape_are_refused() -> None:
 
 @pytest.mark.parametrize("temperature", [0.0, -1.0, math.nan])
 def test_temperature_out_of_range_is_refused(temperature: float) -> None:
-    with pytest.raises(InputError, match="perceiver: temperature"):
-        Perceiver(ScriptedDetector(), ScriptedMatcher(), temperature=temperature)
+    with pytest.raises(InputError, match="thresholds: temperature"):
+        Thresholds(temperature=temperature)
 
 
 def test_empty_name_is_refused() -> None:

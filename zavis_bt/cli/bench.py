@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -31,7 +31,9 @@ def bench(
     workers: Annotated[int, typer.Option("--workers", "-j", min=1, help="Processes.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="Of the whole benchmark.")] = 0,
     repeats: Annotated[int, typer.Option(min=1, help="How often each method searches each episode.")] = 1,
-    perception: Annotated[str, typer.Option(help="Who sees: simulated.")] = "simulated",
+    perception: Annotated[
+        str, typer.Option(help="Who sees: simulated, neural, a plug-in, or an eyes file.")
+    ] = "simulated",
     prior: Annotated[str, typer.Option(help="Commonsense: commonsense, word, none, or a plug-in.")] = "commonsense",
     planner: Annotated[str, typer.Option(help="Global planner.")] = "astar",
     max_travel: Annotated[float, typer.Option(min=0.1, help="Give up after this many metres.")] = 50.0,
@@ -57,6 +59,7 @@ def bench(
         out,
         settings={
             **{"robot": robot, "perception": perception, "prior": prior},
+            "eyes": _eyes(perception),
             **{"planner": planner, "max_travel": max_travel, "seed": seed},
             "episodes": _digest([episodes]),
             "trees": {name: _digest(sorted(path.parent.glob("*.yaml"))) for name, path in trees.items()},
@@ -65,6 +68,17 @@ def bench(
     )
     write_summary(results, out)
     print_summary(results, Console())
+
+
+def _eyes(perception: str) -> dict[str, Any]:
+    """Return what decides how the eyes see, having opened them: what is wrong is told before the first episode."""
+    import numpy as np
+
+    from zavis_bt.cli.seeing import eyes_in_records, eyes_of
+    from zavis_bt.knowledge import word_vectors
+
+    rng = np.random.default_rng(0)
+    return eyes_in_records(eyes_of(perception, (), lambda _: rng, word_vectors().similarity))
 
 
 def _tree(method: str) -> Path:

@@ -11,6 +11,9 @@ import typer
 def demo(
     target: Annotated[str, typer.Option("--target", "-t", help="What to find.")] = "red wallet",
     seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
+    perception: Annotated[
+        str, typer.Option(help="Who sees: simulated, neural, a plug-in, or an eyes file.")
+    ] = "simulated",
     view: Annotated[
         bool, typer.Option("--view/--no-view", help="Show map, robot and tree live in the browser.")
     ] = True,
@@ -21,7 +24,13 @@ def demo(
     from zavis_bt.cli.run import report, run_mission, simulated
     from zavis_bt.cli.simulate import Choices
 
-    choices = Choices(tree=resolve_tree("search"), robot=load_robot_spec("pioneer3at"), method="search", real_time=view)
+    choices = Choices(
+        tree=resolve_tree("search"),
+        robot=load_robot_spec("pioneer3at"),
+        method="search",
+        perception=perception,
+        real_time=view,
+    )
     print(f"Looking for “{target}” in the built-in apartment …")
     result, folder = run_mission(simulated(choices, "apartment", target, seed, None), record=record, view=view)
     report(result, folder)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import gc
 import sys
+from functools import partial
 from pathlib import Path
 
+from zavis_bt.cli.seeing import SIMULATED, eyes_of, needs_simulator, with_landmarks_of
 from zavis_bt.cli.simulate import Choices, human_of, open_tree
-from zavis_bt.errors import InputError
 from zavis_bt.knowledge import make_prior, word_vectors
 from zavis_bt.mission import DeviceRobot, Mission, Parts, RobotFile, Search, Task, ThreadJobs, WallClock
 from zavis_bt.types import MissionResult, Pose2D
@@ -42,19 +43,17 @@ class RobotMission:
         """
         from sim.noise import stream
         from sim.oracle import NamedOracle
-        from sim.perception import SimDetector, SimMatcher
 
         if not has_simulated_camera(file):
-            raise InputError(
-                f"{file.path}: --perception simulated: needs the simulator's camera, whose frames say what they show "
-                f"(devices.camera.driver: sim)"
-            )
+            if choices.perception == SIMULATED:
+                raise needs_simulator(f"{file.path}: --perception {SIMULATED}", "--perception neural")
+            if choices.confirm == "oracle":
+                raise needs_simulator(f"{file.path}: --confirm oracle", "--confirm terminal")
         search = Search(target, choices.known, choices.unknown)
         tree = open_tree(choices, target)
         similarity = word_vectors().similarity
         self._clock, self._jobs = WallClock(), ThreadJobs()
-        detector = SimDetector(choices.known, stream(task.seed, "detector"))
-        matcher = SimMatcher(similarity, stream(task.seed, "matcher"))
+        self.eyes = eyes_of(choices.perception, choices.known, partial(stream, task.seed), similarity)
         human = human_of(choices, NamedOracle(target, similarity), self._clock, pictures)
         prior = make_prior(choices.prior)
         self._robot = DeviceRobot(file, self._clock, start)
@@ -64,13 +63,14 @@ class RobotMission:
                 robot=self._robot,
                 clock=self._clock,
                 jobs=self._jobs,
-                detector=detector,
-                matcher=matcher,
+                detector=self.eyes.detector,
+                matcher=self.eyes.matcher,
                 prior=prior,
                 human=human,
                 rng=stream(task.seed, "planning"),
+                thresholds=self.eyes.thresholds,
             )
-            self.mission = Mission(tree, parts, search, task, settings=choices.settings)
+            self.mission = Mission(tree, parts, with_landmarks_of(self.eyes, search), task, settings=choices.settings)
         except BaseException:
             self.close()
             raise

@@ -38,7 +38,10 @@ def run(
         str | None, typer.Option(help="Start x,y,yaw in m, m, degrees; else the world's first, or 0,0,0 on a robot.")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
-    perception: Annotated[str, typer.Option(help="Who sees: simulated.")] = "simulated",
+    perception: Annotated[
+        str | None,
+        typer.Option(help="Who sees: simulated, neural, a plug-in, or an eyes file; neural on real cameras."),
+    ] = None,
     prior: Annotated[str, typer.Option(help="Commonsense: commonsense, word, none, or a plug-in.")] = "commonsense",
     order: Annotated[str | None, typer.Option(help="Visiting order: greedy, nearest, or a plug-in.")] = None,
     planner: Annotated[
@@ -73,7 +76,7 @@ def run(
         robot=file.spec,
         method=path.stem,
         prior=prior,
-        perception=perception,
+        perception=perception or _who_sees(file),
         confirm=confirm or _who_answers(file),
         known=_names(known, DEFAULT_KNOWN_LANDMARKS),
         unknown=_names(unknown, DEFAULT_UNKNOWN_LANDMARKS),
@@ -161,6 +164,7 @@ def run_mission(
     from datetime import datetime
 
     from zavis_bt.cli.files import load_maps
+    from zavis_bt.cli.seeing import eyes_in_records
     from zavis_bt.cli.viewing import viewer
     from zavis_bt.recording import RunRecorder, new_run_folder
 
@@ -171,7 +175,14 @@ def run_mission(
         mission = composed.mission
         if maps is not None:
             mission.resume(*maps)
-        recorder = RunRecorder(folder, {**plan.settings, "resume": None if resume is None else str(resume)})
+        recorder = RunRecorder(
+            folder,
+            {
+                **plan.settings,
+                "eyes": eyes_in_records(composed.eyes),
+                "resume": None if resume is None else str(resume),
+            },
+        )
         mission.observe(recorder, recorder.on_event)
         with viewer(view, f"find the {plan.target}") as viewers:
             for observer in viewers:
@@ -216,6 +227,13 @@ def _who_answers(file: RobotFile) -> str:
     from zavis_bt.cli.on_robot import has_simulated_camera
 
     return "terminal" if file.devices and not has_simulated_camera(file) else "oracle"
+
+
+def _who_sees(file: RobotFile) -> str:
+    """Return the eyes that suit a robot: simulated ones where frames say what they show."""
+    from zavis_bt.cli.on_robot import has_simulated_camera
+
+    return "neural" if file.devices and not has_simulated_camera(file) else "simulated"
 
 
 def _wanted(target: str | None) -> str:

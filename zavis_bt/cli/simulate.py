@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from sim.oracle import Oracle
-from sim.perception import SimDetector, SimMatcher
 from sim.simulation import Simulation
 from sim.targets import instances_named
 from sim.world import World
+from zavis_bt.cli.seeing import SIMULATED, check_perception, eyes_of, with_landmarks_of
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.knowledge import make_prior, word_vectors
 from zavis_bt.mission import (
@@ -33,7 +33,6 @@ from zavis_bt.tree import Registry, Tree, load_tree
 from zavis_bt.types import MissionResult, Pose2D, RobotSpec
 
 CONFIRMATIONS = ("oracle", "terminal", "timeout")
-PERCEPTIONS = ("simulated",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +43,8 @@ class Choices:
     robot: RobotSpec
     method: str
     prior: str = "commonsense"
-    perception: str = "simulated"
+    perception: str = SIMULATED
+    """``simulated``, ``neural``, a plug-in, or an eyes file."""
     confirm: str = "oracle"
     known: tuple[str, ...] = DEFAULT_KNOWN_LANDMARKS
     unknown: tuple[str, ...] = DEFAULT_UNKNOWN_LANDMARKS
@@ -57,14 +57,11 @@ class Choices:
         """Check the names.
 
         Raises:
-            InputError: There is no such kind of perception or confirmation.
+            InputError: There is no such kind of perception or confirmation, or an eyes file is wrong.
         """
-        for option, value, names in (
-            ("--perception", self.perception, PERCEPTIONS),
-            ("--confirm", self.confirm, CONFIRMATIONS),
-        ):
-            if value not in names:
-                raise InputError(f"{option}: '{value}' is unknown{did_you_mean(value, names)}")
+        check_perception(self.perception)
+        if self.confirm not in CONFIRMATIONS:
+            raise InputError(f"--confirm: '{self.confirm}' is unknown{did_you_mean(self.confirm, CONFIRMATIONS)}")
 
 
 class SimulatedMission:
@@ -97,23 +94,26 @@ class SimulatedMission:
         """
         search = Search(target, choices.known, choices.unknown)
         tree = open_tree(choices, target)
+        similarity = word_vectors().similarity
+        wanted = instances_named(world, target, similarity) if targets is None else targets
         self.simulation = Simulation(world, choices.robot, start, task.seed, real_time=choices.real_time)
         clock = self.simulation.clock
         self._jobs: ThreadJobs | InlineJobs = ThreadJobs() if choices.real_time else InlineJobs(clock)
-        similarity = word_vectors().similarity
-        wanted = instances_named(world, target, similarity) if targets is None else targets
+        threads = None if choices.real_time else 1  # in lock step, runs are the same whatever the number of cores
+        self.eyes = eyes_of(choices.perception, choices.known, self.simulation.rng, similarity, threads=threads)
         parts = Parts(
             robot=self.simulation.robot,
             clock=clock,
             jobs=self._jobs,
-            detector=SimDetector(choices.known, self.simulation.rng("detector")),
-            matcher=SimMatcher(similarity, self.simulation.rng("matcher")),
+            detector=self.eyes.detector,
+            matcher=self.eyes.matcher,
             prior=make_prior(choices.prior),
             human=human_of(choices, Oracle(wanted), clock, pictures),
             rng=self.simulation.rng("planning"),
             details=lambda: {"collisions": self.simulation.collisions},
+            thresholds=self.eyes.thresholds,
         )
-        self.mission = Mission(tree, parts, search, task, settings=choices.settings)
+        self.mission = Mission(tree, parts, with_landmarks_of(self.eyes, search), task, settings=choices.settings)
 
     def run(self) -> MissionResult:
         """Run to the end.

@@ -88,7 +88,7 @@ class Mission:
             parts.matcher,
             known=search.known,
             unknown=search.unknown,
-            match_threshold=self._settings.match_threshold,
+            thresholds=parts.thresholds,
         )
         tree.setup(
             {

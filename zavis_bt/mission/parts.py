@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from zavis_bt.perception import Thresholds
 from zavis_bt.protocols import Clock, Detector, Human, Jobs, KnowledgePrior, Matcher, Robot
 
 
@@ -35,3 +36,5 @@ class Parts:
     rng: np.random.Generator
     details: Callable[[], Mapping[str, Any]] = dict
     """Further counts for the result that only whoever plays the robot knows."""
+    thresholds: Thresholds = field(default_factory=Thresholds)
+    """What the scores of detector and matcher mean."""

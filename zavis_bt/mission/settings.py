@@ -63,6 +63,4 @@ class MissionSettings:
     """Global planner by name."""
     smooth: bool = False
     """Whether the base's commands on a path are limited in jerk."""
-    match_threshold: float = 29.0
-    """Matching score m_t from which a box is a candidate."""
     safety: SafetySettings = field(default_factory=SafetySettings)

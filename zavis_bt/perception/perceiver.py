@@ -9,6 +9,7 @@ import numpy as np
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.boxes import clip, suppress, touches_border
+from zavis_bt.perception.calibration import Thresholds
 from zavis_bt.perception.landmarks import DEFAULT_KNOWN_LANDMARKS, DEFAULT_UNKNOWN_LANDMARKS
 from zavis_bt.perception.naming import key, may_name
 from zavis_bt.perception.projection import Located, locate_landmark, locate_object
@@ -36,9 +37,9 @@ class Perceiver:
     - A box of a known landmark class is a sighting with the detector's class probabilities, restricted to the known
       landmarks.
     - An ``unknown`` box is matched with the names of the unknown landmarks and with the target, in one call of the
-      matcher a frame. If its score for the target is at least `match_threshold` (m_t), it is a candidate. If not, and
-      its best landmark's score is at least `landmark_threshold` and it is as large as furniture, it is a sighting
-      with softmax(m / T_o) over the names.
+      matcher a frame. If its score for the target is at least m_t, it is a candidate. If not, and its best landmark's
+      score is at least the landmarks' threshold and it is as large as furniture, it is a sighting with
+      softmax(m / T_o) over the names.
     - Both are projected with the depth and camera pose of this very frame. What has no depth is left out: it could
       be neither drawn on the map nor driven to, and is seen again from nearer.
 
@@ -56,9 +57,7 @@ class Perceiver:
         *,
         known: Sequence[str] = DEFAULT_KNOWN_LANDMARKS,
         unknown: Sequence[str] = DEFAULT_UNKNOWN_LANDMARKS,
-        match_threshold: float = 29.0,
-        landmark_threshold: float = 24.0,
-        temperature: float = 1.0,
+        thresholds: Thresholds | None = None,
         min_landmark_size: float = 0.25,
     ) -> None:
         """Connect a detector and a matcher.
@@ -66,27 +65,22 @@ class Perceiver:
         Args:
             detector: Open-set detector.
             matcher: Text-image matcher.
-            known: Names O_k of the landmarks that are classes of the detector; case and spaces do not matter.
+            known: Names O_k of the landmarks that are classes of the detector; case and spaces do not matter, and
+                usual other names will do.
             unknown: Names O_u of the landmarks told by matching.
-            match_threshold: m_t, on the 100 × cosine scale.
-            landmark_threshold: What the best landmark name of an ``unknown`` box must score, same scale.
-            temperature: T_o of the softmax over landmark names, above 0.
+            thresholds: Those that belong to detector and matcher; of CLIP ViT-B/32 if not given.
             min_landmark_size: Larger side of the smallest ``unknown`` landmark [m].
 
         Raises:
-            InputError: A setting is out of its range, or a name is empty.
+            InputError: A name is empty.
         """
-        if not (math.isfinite(temperature) and temperature > 0):
-            raise InputError(f"perceiver: temperature is {temperature} (above 0)")
         if any(not key(name) for name in (*known, *unknown)):
             raise InputError("perceiver: a landmark's name is empty (write it in words, such as 'coffee table')")
         self._detector = detector
         self._matcher = matcher
         self._known = {key(name): name for name in known}
         self._unknown = tuple(dict.fromkeys(unknown))
-        self._match_threshold = match_threshold
-        self._landmark_threshold = landmark_threshold
-        self._temperature = temperature
+        self._thresholds = thresholds or Thresholds()
         self._min_landmark_size = min_landmark_size
 
     def perceive(self, frame: RgbdFrame, target: str) -> Percept:
@@ -116,7 +110,9 @@ class Perceiver:
         return Percept(tuple(distinct), self._candidates(frame, target, matched, scores[:, -1]))
 
     def _detect(self, frame: RgbdFrame) -> list[Detection]:
-        usable = [detection for detection in self._detector.detect(frame) if math.isfinite(detection.score)]
+        least = self._thresholds.detection
+        found = self._detector.detect(frame)
+        usable = [one for one in found if math.isfinite(one.score) and one.score >= least]
         return sorted(usable, key=lambda detection: (-detection.score, detection.box))
 
     def _match(self, frame: RgbdFrame, boxes: Sequence[Box], target: str) -> FloatArray:
@@ -156,12 +152,14 @@ class Perceiver:
         for (detection, box), row in zip(unknown, scores, strict=False):  # rows of named boxes follow
             names, target = row[:-1], row[-1]
             best = names.max(initial=-np.inf)
-            if target >= self._match_threshold or best < self._landmark_threshold or not math.isfinite(best):
+            if target >= self._thresholds.match or best < self._thresholds.landmark or not math.isfinite(best):
                 continue
             located = locate_landmark(frame, box)
             if located is None or not self._large_enough(frame, box, located):
                 continue
-            distribution = tuple(zip(self._unknown, softmax(names / self._temperature).tolist(), strict=True))
+            distribution = tuple(
+                zip(self._unknown, softmax(names / self._thresholds.temperature).tolist(), strict=True)
+            )
             sightings.append(_sighting(frame, detection, box, distribution, located))
         return sightings
 
@@ -177,7 +175,7 @@ class Perceiver:
     ) -> tuple[Candidate, ...]:
         candidates = []
         for index in np.argsort(-scores, kind="stable"):
-            if scores[index] < self._match_threshold:
+            if scores[index] < self._thresholds.match:
                 break
             located = locate_object(frame, boxes[index])
             if located is not None:

@@ -1,0 +1,36 @@
+"""What the scores of a matcher mean: the thresholds that belong to one model."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+from zavis_bt.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Thresholds:
+    """When a score counts. The defaults are those of CLIP ViT-B/32, for which the paper gives m_t = 29."""
+
+    match: float = 29.0
+    """m_t: score from which a box is a candidate, 100 × cosine."""
+    landmark: float = 24.0
+    """What the best landmark name of an ``unknown`` box must score, 100 × cosine."""
+    temperature: float = 1.0
+    """T_o of the softmax over landmark names, above 0, 100 × cosine."""
+    detection: float = 0.0
+    """Confidence below which the detector's boxes are not looked at, 0 to 1."""
+
+    def __post_init__(self) -> None:
+        """Check the ranges.
+
+        Raises:
+            InputError: A threshold is out of its range.
+        """
+        for field in fields(self):
+            if not math.isfinite(getattr(self, field.name)):
+                raise InputError(f"thresholds: {field.name} is {getattr(self, field.name)} (a finite number)")
+        if self.temperature <= 0:
+            raise InputError(f"thresholds: temperature is {self.temperature} (above 0)")
+        if not 0.0 <= self.detection < 1.0:
+            raise InputError(f"thresholds: detection is {self.detection} (0 or more, below 1)")

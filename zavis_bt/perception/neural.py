@@ -1,0 +1,128 @@
+"""Neural eyes: an open-set detector and CLIP, with our weights or the user's."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import lru_cache
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from zavis_bt.errors import InputError
+from zavis_bt.perception.calibration import Thresholds
+from zavis_bt.perception.eyes import Eyes, EyesSettings
+
+DETECTOR, CLIP = "zavis-tiny-detector", "zavis-tiny"
+"""Weights that come along; trained on rendered images."""
+_LIBRARIES = ("torch", "torchvision", "open_clip")
+_EXTRA = "pip install 'zavis_bt[neural]'"
+_PAPERS_MODEL = "ViT-B-32"  # whose threshold of 29 the paper gives
+
+
+def open_eyes(settings: EyesSettings) -> Eyes:
+    """Make neural eyes; those of the same settings are made once in a process.
+
+    Args:
+        settings: Weights; the small ones that come along if not given. Thresholds; those that belong to the
+            image-text model if not given.
+
+    Raises:
+        InputError: Torch is not installed, weights or thresholds cannot be had, or do not belong together.
+    """
+    missing = [library for library in _LIBRARIES if find_spec(library) is None]
+    if missing:
+        raise InputError(f"{settings.where}: neural: needs {missing[0]} ({_EXTRA})")
+    return _opened(settings)
+
+
+@lru_cache(maxsize=2)
+def _opened(settings: EyesSettings) -> Eyes:
+    from zavis_bt.perception.clip import ClipMatcher, ClipModel
+    from zavis_bt.perception.detector import NeuralDetector
+    from zavis_bt.perception.models import find_weights
+
+    _prepare(settings)
+    file = find_weights(settings.detector or DETECTOR)
+    name, _, pretrained = (settings.clip or CLIP).partition("@")
+    model = ClipModel.load(name, pretrained or None, device=settings.device)
+    detector = NeuralDetector.load(file, device=settings.device)
+    checksums = {"detector": checksum(file)} | clip_checksum(name, pretrained)
+    _check_checksums(settings, checksums)
+    thresholds = settings.thresholds or thresholds_of(settings)
+    return Eyes(
+        detector,
+        ClipMatcher(model),
+        thresholds,
+        classes=tuple(detector.classes),
+        about={
+            "detector": settings.detector or DETECTOR,
+            "clip": settings.clip or CLIP,
+            "sha256": checksums,
+            "device": settings.device,
+        },
+    )
+
+
+def _prepare(settings: EyesSettings) -> None:
+    """Set what holds for all networks of the process."""
+    import torch
+
+    if settings.device.partition(":")[0] not in ("cpu", "cuda"):
+        raise InputError(f"{settings.where}: device: '{settings.device}' is unknown (cpu or cuda)")
+    if settings.device != "cpu" and not torch.cuda.is_available():
+        raise InputError(f"{settings.where}: device: '{settings.device}' is not there (choose cpu)")
+    if settings.threads is not None:
+        torch.set_num_threads(settings.threads)
+
+
+def thresholds_of(settings: EyesSettings) -> Thresholds:
+    """Return the thresholds that come along with an image-text model.
+
+    Raises:
+        InputError: None come along with this one.
+    """
+    from zavis_bt.perception.eyes_file import read_eyes
+
+    clip = settings.clip or CLIP
+    shipped = Path(str(files("zavis_bt.perception"))) / "weights" / f"{clip}.eyes.yaml"
+    if shipped.is_file():
+        _, known = read_eyes(shipped)
+        if known.thresholds is not None:
+            return known.thresholds
+    if clip.startswith(_PAPERS_MODEL):
+        return Thresholds()
+    raise InputError(
+        f"{settings.where}: clip: no thresholds are known for '{clip}' "
+        f"(measure them: zavis perception calibrate DATA --clip {clip} --out my.eyes.yaml)"
+    )
+
+
+def checksum(path: Path) -> str:
+    """Return the SHA-256 of a file, or of the files of a folder by name."""
+    if path.is_dir():
+        digest = hashlib.sha256()
+        for file in sorted(child for child in path.iterdir() if child.is_file()):
+            digest.update(f"{file.name}:{checksum(file)}\n".encode())
+        return digest.hexdigest()
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def clip_checksum(name: str, pretrained: str) -> dict[str, str]:
+    """Return the SHA-256 of an image-text model's weights as ``{"clip": …}``, empty if it has no file of ours."""
+    from zavis_bt.perception.models import find_weights
+
+    for place in (pretrained, name):
+        if place and Path(place).exists():
+            return {"clip": checksum(Path(place))}
+    return {"clip": checksum(find_weights(name))} if name == CLIP else {}
+
+
+def _check_checksums(settings: EyesSettings, found: dict[str, Any]) -> None:
+    for kind, expected in settings.checksums:
+        if kind in found and found[kind] != expected:
+            raise InputError(
+                f"{settings.where}: the thresholds were measured with another {kind} (SHA-256 {expected[:12]}…, this "
+                f"one has {found[kind][:12]}…; measure again: zavis perception calibrate DATA --out {settings.where})"
+            )
