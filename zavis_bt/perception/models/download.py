@@ -11,7 +11,7 @@ from pathlib import Path
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.models.forms import check_form
-from zavis_bt.perception.models.manifest import ModelEntry, manifest, by_hand
+from zavis_bt.perception.models.manifest import ModelEntry, by_hand, manifest
 from zavis_bt.perception.models.seals import Progress, Seal, sum_file, sums_of
 from zavis_bt.perception.models.store import ModelStore
 
