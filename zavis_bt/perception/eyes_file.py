@@ -5,6 +5,7 @@ Files and folders that exist beside the eyes file are taken from there; other na
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -91,7 +92,8 @@ def write_eyes(path: Path, settings: EyesSettings, calibrated: Mapping[str, Any]
     from ruamel.yaml import YAML
 
     entries: dict[str, Any] = {"format": FORMAT, "perception": "neural"}
-    entries |= {name: getattr(settings, name) for name in ("detector", "clip") if getattr(settings, name) is not None}
+    weights = {"detector": settings.detector, "clip": settings.clip}
+    entries |= {kind: _seen_from(path, name) for kind, name in weights.items() if name is not None}
     if settings.device != "cpu":
         entries["device"] = settings.device
     if settings.thresholds is not None:
@@ -112,5 +114,14 @@ def _beside(file: Path, name: str | None) -> str | None:
     """Return the path of what lies beside the file, or the name as it is."""
     if name is None:
         return None
-    path = file.parent / name
-    return str(path) if path.exists() else name
+    model, at, pretrained = name.rpartition("@")
+    path = file.parent / pretrained
+    return f"{model}{at}{path}" if path.exists() else name
+
+
+def _seen_from(file: Path, name: str) -> str:
+    """Return the path from the file's folder to what exists under a name, or the name as it is."""
+    model, at, pretrained = name.rpartition("@")
+    if not Path(pretrained).exists():
+        return name
+    return f"{model}{at}{os.path.relpath(pretrained, file.parent)}"

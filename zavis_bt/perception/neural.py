@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.calibration import Thresholds
@@ -43,25 +43,37 @@ def _opened(settings: EyesSettings) -> Eyes:
     from zavis_bt.perception.models import find_weights
 
     _prepare(settings)
-    file = find_weights(settings.detector or DETECTOR)
-    name, _, pretrained = (settings.clip or CLIP).partition("@")
-    model = ClipModel.load(name, pretrained or None, device=settings.device)
-    detector = NeuralDetector.load(file, device=settings.device)
-    checksums = {"detector": checksum(file)} | clip_checksum(name, pretrained)
+    detector_name, clip_name = settings.detector or DETECTOR, settings.clip or CLIP
+    file = find_weights(detector_name)
+    architecture, pretrained, weights = find_clip(clip_name)
+    checksums = {"detector": checksum(file)} | ({"clip": checksum(weights)} if weights else {})
     _check_checksums(settings, checksums)
     thresholds = settings.thresholds or thresholds_of(settings)
-    return Eyes(
-        detector,
-        ClipMatcher(model),
-        thresholds,
-        classes=tuple(detector.classes),
-        about={
-            "detector": settings.detector or DETECTOR,
-            "clip": settings.clip or CLIP,
-            "sha256": checksums,
-            "device": settings.device,
-        },
-    )
+    detector = NeuralDetector.load(file, device=settings.device)
+    matcher = ClipMatcher(ClipModel.load(architecture, pretrained, device=settings.device))
+    about = {"detector": detector_name, "clip": clip_name, "sha256": checksums, "device": settings.device}
+    return Eyes(detector, matcher, thresholds, tuple(detector.classes), about)
+
+
+def find_clip(name: str) -> tuple[str, str | None, Path | None]:
+    """Return what an image-text model is loaded by: architecture or folder, weights or tag, and where its file is.
+
+    Args:
+        name: Of weights as `find_weights` knows them, a folder, or ``MODEL@PRETRAINED`` of open_clip, of which the
+            second part is a tag or a file.
+
+    Raises:
+        InputError: The weights are missing or damaged.
+    """
+    from zavis_bt.perception.models import ModelStore, find_weights
+
+    model, at, pretrained = name.partition("@")
+    if at:
+        return model, pretrained, Path(pretrained) if Path(pretrained).is_file() else None
+    if "/" in name or Path(name).exists() or name in ModelStore().names():
+        folder = find_weights(name)
+        return str(folder), None, folder
+    return name, None, None
 
 
 def _prepare(settings: EyesSettings) -> None:
@@ -109,17 +121,7 @@ def checksum(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def clip_checksum(name: str, pretrained: str) -> dict[str, str]:
-    """Return the SHA-256 of an image-text model's weights as ``{"clip": …}``, empty if it has no file of ours."""
-    from zavis_bt.perception.models import find_weights
-
-    for place in (pretrained, name):
-        if place and Path(place).exists():
-            return {"clip": checksum(Path(place))}
-    return {"clip": checksum(find_weights(name))} if name == CLIP else {}
-
-
-def _check_checksums(settings: EyesSettings, found: dict[str, Any]) -> None:
+def _check_checksums(settings: EyesSettings, found: Mapping[str, str]) -> None:
     for kind, expected in settings.checksums:
         if kind in found and found[kind] != expected:
             raise InputError(

@@ -1,0 +1,178 @@
+"""Measuring thresholds: what a model scores where the truth is known.
+
+Eyes look at labelled images as they would in a mission.
+
+- m_t: a text that nothing in the image answers to shall bring a candidate in at most a given share of the images.
+- The landmarks' threshold sets boxes of furniture that goes by a landmark's name apart from all others, by the
+  greatest sum of both shares told rightly (Youden's index).
+- T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zavis_bt.errors import InputError
+from zavis_bt.perception.calibration import Thresholds
+from zavis_bt.perception.datasets import DetectionDataset
+from zavis_bt.perception.eyes import Eyes
+from zavis_bt.perception.looking import Look, look_at
+from zavis_bt.perception.naming import key
+from zavis_bt.types import FloatArray
+
+_LEAST_PAIRS = 30  # from which a threshold means something
+_TEMPERATURES = np.geomspace(0.05, 50.0, 241)
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Thresholds, and how well they do on the images they are measured on."""
+
+    thresholds: Thresholds
+    right: FloatArray
+    """Scores of boxes with the name of what they show."""
+    wrong: FloatArray
+    """Highest scores in an image of names that nothing in it answers to."""
+    recall: float
+    """Share of the right pairs that reach m_t."""
+    landmark_recall: float
+    """Share of landmarks' boxes that reach the landmarks' threshold."""
+    landmark_false: float
+    """Share of other boxes that do."""
+    landmark_accuracy: float
+    """Share of landmarks' boxes whose best name is right."""
+    landmarks: int
+    """Boxes of landmarks."""
+    boxes: int
+    images: int
+
+
+def calibrate(
+    looks: Sequence[Look],
+    texts: Sequence[str],
+    landmarks: Sequence[str],
+    *,
+    false_alarms: float = 0.02,
+    detection: float = 0.0,
+) -> Calibration:
+    """Return the thresholds that suit what eyes made of images.
+
+    Args:
+        looks: What they made of them.
+        texts: What the boxes were matched with.
+        landmarks: Names of landmarks that are told by matching; those that are no texts are left out.
+        false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
+        detection: Confidence below which boxes were not looked at.
+
+    Raises:
+        InputError: The images show too little to tell.
+    """
+    right = np.concatenate([np.empty(0), *(_right(look, texts) for look in looks)])
+    wrong = np.concatenate([np.empty(0), *(_wrong(look, texts) for look in looks)])
+    _need(len(right), "boxes around what is annotated")
+    match = float(np.quantile(wrong, 1 - false_alarms, method="higher"))
+    names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
+    columns = [texts.index(name) for name in names]
+    rows, truth = _landmark_rows(looks, columns, names)
+    is_landmark = truth >= 0
+    _need(int(is_landmark.sum()), "unknown boxes around landmarks" + (f" ({', '.join(names)})" if names else ""))
+    best = rows.max(axis=1)
+    landmark = _dividing(best, is_landmark)
+    told = rows[is_landmark]
+    temperature = _temperature(told, truth[is_landmark])
+    return Calibration(
+        Thresholds(round(match, 2), round(landmark, 2), round(temperature, 3), detection),
+        right,
+        wrong,
+        recall=float((right >= match).mean()),
+        landmark_recall=float((best[is_landmark] >= landmark).mean()),
+        landmark_false=float((best[~is_landmark] >= landmark).mean()) if (~is_landmark).any() else 0.0,
+        landmark_accuracy=float((told.argmax(axis=1) == truth[is_landmark]).mean()),
+        landmarks=int(is_landmark.sum()),
+        boxes=sum(len(look.shows) for look in looks),
+        images=len(looks),
+    )
+
+
+def _need(count: int, what: str) -> None:
+    if count < _LEAST_PAIRS:
+        raise InputError(f"calibrate: only {count} {what} (at least {_LEAST_PAIRS}: more images, or a better detector)")
+
+
+def _right(look: Look, texts: Sequence[str]) -> FloatArray:
+    """Return the scores of boxes with the name of what they show, as far as the two are matched."""
+    scores = [row[texts.index(name)] for row, name in zip(look.scores, look.shows, strict=True) if name in texts]
+    return np.array([score for score in scores if np.isfinite(score)])
+
+
+def _wrong(look: Look, texts: Sequence[str]) -> FloatArray:
+    """Return the highest score of each text that nothing in the image answers to; -inf without a box."""
+    absent = [column for column, text in enumerate(texts) if text not in look.present]
+    return np.asarray(look.scores[:, absent].max(axis=0, initial=-np.inf))
+
+
+def _landmark_rows(looks: Sequence[Look], columns: list[int], names: list[str]) -> tuple[FloatArray, NDArray[np.intp]]:
+    """Return the scores (n, m) of ``unknown`` boxes with the landmarks' names, and the index of the right one or -1."""
+    rows, truth = [np.empty((0, len(columns)))], []
+    for look in looks:
+        for scores, shown in zip(look.scores[:, columns], look.shows, strict=True):
+            if columns and np.isfinite(scores).all():
+                rows.append(scores[None])
+                truth.append(names.index(shown) if shown in names else -1)
+    return np.concatenate(rows), np.array(truth, dtype=np.intp)
+
+
+def _dividing(scores: FloatArray, positive: NDArray[np.bool_]) -> float:
+    """Return the score that sets the positives apart best."""
+    order = np.argsort(-scores, kind="stable")
+    hits, alarms = np.cumsum(positive[order]), np.cumsum(~positive[order])
+    index = hits / max(hits[-1], 1) - alarms / max(alarms[-1], 1)
+    return float(scores[order][int(index.argmax())])
+
+
+def _temperature(scores: FloatArray, truth: NDArray[np.intp]) -> float:
+    """Return the temperature at which the softmax of (n, m) scores is likeliest to give (n,) the truth."""
+
+    def surprise(temperature: float) -> float:
+        logits = (scores - scores.max(axis=1, keepdims=True)) / temperature
+        return float((np.log(np.exp(logits).sum(axis=1)) - logits[np.arange(len(truth)), truth]).mean())
+
+    return float(min(_TEMPERATURES, key=surprise))
+
+
+def calibrated(
+    eyes: Eyes,
+    images: DetectionDataset,
+    landmarks: Sequence[str],
+    *,
+    count: int = 400,
+    false_alarms: float = 0.02,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Calibration:
+    """Look at labelled images and return the thresholds.
+
+    Args:
+        eyes: Detector and matcher.
+        images: Labelled; texts are their categories.
+        landmarks: Names of landmarks.
+        count: At most so many images, evenly spread over the data set.
+        false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
+        progress: Told how many images are done, of how many.
+
+    Raises:
+        InputError: The images show too little to tell, or an image cannot be read.
+    """
+    total = min(count, len(images))
+    indices = np.unique(np.linspace(0, len(images) - 1, total).round().astype(int)).tolist() if total else []
+    texts = list(images.categories)
+    looks = []
+    for look in look_at(eyes, images, indices, texts):
+        looks.append(look)
+        progress(len(looks), len(indices))
+    known = {key(name) for name in eyes.classes or ()}
+    told = [name for name in landmarks if key(name) not in known]
+    return calibrate(looks, texts, told, false_alarms=false_alarms, detection=eyes.thresholds.detection)
