@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+import signal
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
@@ -18,13 +19,16 @@ from numpy.typing import NDArray
 from sim.appearance import SHAPES, CameraEffects, random_frame, random_scene
 from sim.frame import SimFrame
 from sim.render_labels import Label
-from zavis_bt.errors import InputError
+from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.types import CameraIntrinsics
 
 _QUALITY = 92  # of the JPEG files
 _FRAMES_A_ROOM = 4
 _FILE = "annotations.json"
 _RENDERED = "rendered by zavis_bt's simulator"
+
+_Labelled = tuple[dict[str, Any], list[dict[str, Any]]]
+"""An image and its annotations, as COCO writes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +51,29 @@ class FrameRecipe:
     """The same for things of which less is in sight [share]."""
 
 
+def chosen_categories(without: Iterable[str] = (), also: Iterable[str] = ()) -> tuple[str, ...]:
+    """Return the categories of a recipe: all but some, some of them twice as often as the others.
+
+    Args:
+        without: Never drawn.
+        also: Drawn once more each time they are named.
+
+    Raises:
+        InputError: A category is unknown, both left out and wanted, or none is left.
+    """
+    without, also = tuple(without), tuple(also)
+    for name in (*without, *also):
+        if name not in SHAPES:
+            raise InputError(f"frames: there is no category '{name}'{did_you_mean(name, SHAPES)}")
+    both = next((name for name in also if name in without), None)
+    if both is not None:
+        raise InputError(f"frames: '{both}' cannot be left out and drawn more often (name it once)")
+    left = tuple(name for name in SHAPES if name not in without)
+    if not left:
+        raise InputError("frames: no category is left to draw (leave out fewer)")
+    return left + also
+
+
 def write_frames(folder: Path, count: int, recipe: FrameRecipe, workers: int = 1) -> Iterator[int]:
     """Write a data set: ``images/*.jpg`` and ``annotations.json`` in COCO's form.
 
@@ -63,10 +90,11 @@ def write_frames(folder: Path, count: int, recipe: FrameRecipe, workers: int = 1
         How many images are written, after each room.
 
     Raises:
-        InputError: The folder holds something, a category is unknown, or a number is out of its range.
+        InputError: The folder holds something or cannot be written, a category is unknown, or a number is out of its
+            range.
     """
     _check(folder, count, recipe)
-    (folder / "images").mkdir(parents=True, exist_ok=True)
+    _begin(folder)
     rooms = range(math.ceil(count / _FRAMES_A_ROOM))
     images: list[dict[str, Any]] = []
     annotations: list[dict[str, Any]] = []
@@ -81,11 +109,11 @@ def write_frames(folder: Path, count: int, recipe: FrameRecipe, workers: int = 1
         "annotations": annotations,
         "categories": [{"id": number, "name": name} for name, number in _numbers().items()],
     }
-    (folder / _FILE).write_text(json.dumps(document, separators=(",", ":")))
+    _finish(folder, document)
 
 
 def frames_of_room(recipe: FrameRecipe, room: int) -> Iterator[tuple[SimFrame, NDArray[np.uint8]]]:
-    """Yield the views of one random room: the frame, which knows its labels, and its image (h, w, 3) from the camera."""
+    """Yield the views of one random room: the frame, which knows its labels, and its image (h, w, 3)."""
     rng = np.random.default_rng([recipe.seed, room])
     scene = random_scene(rng, recipe.categories)
     camera = CameraIntrinsics.from_fov(recipe.width, recipe.width * 3 // 4, recipe.horizontal_fov)
@@ -102,19 +130,37 @@ def _check(folder: Path, count: int, recipe: FrameRecipe) -> None:
     strange = [name for name in recipe.categories if name not in SHAPES]
     if strange or not recipe.categories:
         raise InputError(f"frames: no category {', '.join(strange) or 'at all'} (see docs/appearance.md)")
+    if not 0 < recipe.distance[0] <= recipe.distance[1]:
+        raise InputError(f"frames: distances of {recipe.distance[0]:g} to {recipe.distance[1]:g} m (nearest first)")
 
 
-def _rooms(write: Any, rooms: range, workers: int) -> Iterable[list[tuple[dict[str, Any], list[dict[str, Any]]]]]:
+def _begin(folder: Path) -> None:
+    try:
+        (folder / "images").mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made: {error.strerror}") from error
+
+
+def _finish(folder: Path, document: dict[str, Any]) -> None:
+    """Write the annotations last and at once: a folder that has them is whole."""
+    unfinished = folder / f"{_FILE}.part"
+    try:
+        unfinished.write_text(json.dumps(document, separators=(",", ":")))
+        unfinished.replace(folder / _FILE)
+    except OSError as error:
+        raise InputError(f"{folder / _FILE}: cannot be written: {error.strerror}") from error
+
+
+def _rooms(write: Callable[[int], list[_Labelled]], rooms: range, workers: int) -> Iterable[list[_Labelled]]:
     if workers == 1:
         yield from map(write, rooms)
         return
-    with get_context("spawn").Pool(workers) as pool:
+    # Ctrl-C reaches all processes of a terminal: only this one is to answer it.
+    with get_context("spawn").Pool(workers, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
         yield from pool.imap(write, rooms, chunksize=8)
 
 
-def _write_room(
-    room: int, *, folder: Path, recipe: FrameRecipe, count: int
-) -> list[tuple[dict[str, Any], list[dict[str, Any]]]]:
+def _write_room(room: int, *, folder: Path, recipe: FrameRecipe, count: int) -> list[_Labelled]:
     cv2.setNumThreads(1)
     written = []
     for view, (frame, rgb) in enumerate(frames_of_room(recipe, room)):
@@ -122,7 +168,9 @@ def _write_room(
         if number >= count:
             break
         name = f"{number:06d}.jpg"
-        cv2.imwrite(str(folder / "images" / name), rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
+        file = folder / "images" / name
+        if not cv2.imwrite(str(file), rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]):
+            raise InputError(f"{file}: cannot be written (is the disk full?)")
         height, width = rgb.shape[:2]
         image = {"id": number, "file_name": f"images/{name}", "width": width, "height": height}
         written.append((image, [_annotation(label, number, recipe) for label in _worth_naming(frame.labels)]))

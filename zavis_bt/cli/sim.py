@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,11 +20,6 @@ PROFILE = "pioneer3at_sim"
 _CAN = "udp_multicast:239.74.163.2"
 
 app = typer.Typer(help="The simulator as hardware.", no_args_is_help=True)
-
-
-@app.callback()
-def root() -> None:
-    """Keep `serve` a command of its own."""
 
 
 @app.command()
@@ -79,6 +75,38 @@ def serve(
             write_robot_file(write_robot, spec, devices.settings())
         introduce(devices, place, pose, _robot_to_name(write_robot, devices, robot), console)
         attend(devices, place, console, view=view)
+
+
+@app.command()
+def frames(
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="New folder: images/ and annotations.json.")],
+    count: Annotated[int, typer.Option("--count", "-n", min=1, help="Images.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0, help="Of all randomness; image k of a seed is always the same.")] = 0,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Of the images [px]; height is 3/4 of it.")] = 640,
+    workers: Annotated[int, typer.Option("--workers", "-j", min=1, help="Processes.")] = 1,
+    without: Annotated[list[str] | None, typer.Option(help="Never draw this category; repeat for more.")] = None,
+    also: Annotated[list[str] | None, typer.Option(help="Draw this category more often; repeat for more.")] = None,
+) -> None:
+    """Draw random rooms and label what they show: a data set in COCO's form to train and judge eyes with."""
+    from sim.labelled_frames import FrameRecipe, chosen_categories, write_frames
+
+    categories = chosen_categories(without or (), also or ())
+    recipe = FrameRecipe(seed=seed, width=width, categories=categories)
+    _follow(write_frames(out, count, recipe, workers), count)
+    typer.echo(f"{out}: {count} images of {len(set(categories))} categories")
+
+
+def _follow(written: Iterable[int], count: int) -> None:
+    """Draw a data set, with a bar at a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    columns = (TextColumn("drawing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("", total=count)
+        for done in written:
+            bar.update(task, completed=done)
 
 
 def _start(world: World, start: str | None, seed: int) -> Pose2D:
