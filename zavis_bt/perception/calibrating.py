@@ -74,7 +74,7 @@ def calibrate(
     right = np.concatenate([np.empty(0), *(_right(look, texts) for look in looks)])
     wrong = np.concatenate([np.empty(0), *(_wrong(look, texts) for look in looks)])
     _need(len(right), "boxes around what is annotated")
-    match = float(np.quantile(wrong, 1 - false_alarms, method="higher"))
+    match = max(float(np.quantile(wrong, 1 - false_alarms, method="higher")), float(right.min()))
     names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
     columns = [texts.index(name) for name in names]
     rows, truth = _landmark_rows(looks, columns, names)
