@@ -74,7 +74,9 @@ def calibrate(
     right = np.concatenate([np.empty(0), *(_right(look, texts) for look in looks)])
     wrong = np.concatenate([np.empty(0), *(_wrong(look, texts) for look in looks)])
     _need(len(right), "boxes around what is annotated")
-    match = max(float(np.quantile(wrong, 1 - false_alarms, method="higher")), float(right.min()))
+    match = float(np.quantile(wrong, 1 - false_alarms, method="higher"))
+    if not np.isfinite(match):  # rarer than asked for, even if every box of another thing were a candidate
+        match = float(right.min())
     names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
     columns = [texts.index(name) for name in names]
     rows, truth = _landmark_rows(looks, columns, names)
