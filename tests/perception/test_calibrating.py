@@ -119,7 +119,7 @@ def test_temperature_is_the_one_that_scores_were_drawn_with() -> None:
 
 
 def test_images_without_boxes_count_as_quiet() -> None:
-    empty = [Look((), np.empty((0, 4)), frozenset()) for _ in range(900)]
+    empty = [Look((), np.empty((0, 4)), frozenset())] * 9900
     found = calibrate([*looks(100, ("desk", [10, 28, 14, 5]), spread=1.0), *empty], TEXTS, LANDMARKS)
     assert found.thresholds.match == pytest.approx(found.right.min(), abs=0.005)
 
