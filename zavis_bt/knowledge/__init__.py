@@ -1,5 +1,6 @@
 """Commonsense: where things usually are, and how near two words are."""
 
+from zavis_bt.knowledge.comet import CometPrior
 from zavis_bt.knowledge.commonsense_prior import CommonsensePrior
 from zavis_bt.knowledge.priors import PRIORS, commonsense, make_prior, none, word
 from zavis_bt.knowledge.simple_priors import UniformPrior, WordPrior
@@ -8,6 +9,7 @@ from zavis_bt.knowledge.vectors import WordVectors, word_vectors
 
 __all__ = [
     "PRIORS",
+    "CometPrior",
     "CommonsensePrior",
     "CommonsenseTable",
     "UniformPrior",

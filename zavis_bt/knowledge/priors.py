@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from zavis_bt.errors import InputError, did_you_mean
+from zavis_bt.knowledge.comet import comet
 from zavis_bt.knowledge.commonsense_prior import CommonsensePrior
 from zavis_bt.knowledge.simple_priors import UniformPrior, WordPrior
 from zavis_bt.knowledge.table import load_table
@@ -51,7 +52,12 @@ def none() -> KnowledgePrior:
     return UniformPrior()
 
 
-PRIORS: dict[str, Callable[..., KnowledgePrior]] = {"commonsense": commonsense, "word": word, "none": none}
+PRIORS: dict[str, Callable[..., KnowledgePrior]] = {
+    "commonsense": commonsense,
+    "comet": comet,
+    "word": word,
+    "none": none,
+}
 
 
 def make_prior(name: str, **settings: Any) -> KnowledgePrior:
