@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -16,6 +14,7 @@ from zavis_bt.types import UNKNOWN_CLASS, Box, Detection, FloatArray, RgbdFrame
 BOX = Box(10, 10, 50, 50)
 TEXTS = ["mug", "desk", "bed", "sofa"]
 LANDMARKS = ("desk", "bed")
+ALL = np.ones((1, 4), dtype=np.bool_)
 
 
 class OnePicture:
@@ -77,7 +76,8 @@ def test_texts_are_matched_with_the_boxes_that_a_mission_would_match() -> None:
     eyes = Eyes(found, Scores(1, 2, 3, 4), Thresholds(detection=0.2))
     (look,) = look_at(eyes, images, [0], TEXTS)
     assert look.shows == ("sofa", "mug")
-    assert look.scores.tolist() == [[-math.inf, -math.inf, -math.inf, 4], [1, 2, 3, 4]]
+    assert look.scores.tolist() == [[1, 2, 3, 4]] * 2
+    assert look.matched.tolist() == [[False, False, False, True], [True] * 4]
     assert look.present == {"sofa", "mug"}
 
 
@@ -86,7 +86,8 @@ def looks(count: int, *rows: tuple[str | None, list[float]], spread: float = 0.0
     shows = tuple(show for show, _ in rows)
     scores = np.array([row for _, row in rows])
     present = frozenset(show for show in shows if show)
-    return [Look(shows, scores + spread * rng.standard_normal(scores.shape), present) for _ in range(count)]
+    every = np.ones(scores.shape, dtype=np.bool_)
+    return [Look(shows, scores + spread * rng.standard_normal(scores.shape), every, present) for _ in range(count)]
 
 
 def test_match_threshold_is_the_quantile_of_what_is_not_there() -> None:
@@ -112,14 +113,14 @@ def test_temperature_is_the_one_that_scores_were_drawn_with() -> None:
     odds = np.exp(scores / 2.5)
     first = rng.random(4000) < odds[:, 0] / odds.sum(axis=1)
     drawn = [
-        Look(("desk" if one else "bed",), np.array([[5.0, *row, 5.0]]), frozenset({"desk", "bed"}))
+        Look(("desk" if one else "bed",), np.array([[5.0, *row, 5.0]]), ALL, frozenset({"desk", "bed"}))
         for one, row in zip(first.tolist(), scores.tolist(), strict=True)
     ]
     assert calibrate(drawn, TEXTS, LANDMARKS).thresholds.temperature == pytest.approx(2.5, rel=0.1)
 
 
 def test_images_without_boxes_count_as_quiet() -> None:
-    empty = [Look((), np.empty((0, 4)), frozenset())] * 9900
+    empty = [Look((), np.empty((0, 4)), ALL[:0], frozenset())] * 9900
     found = calibrate([*looks(100, ("desk", [10, 28, 14, 5]), spread=1.0), *empty], TEXTS, LANDMARKS)
     assert found.thresholds.match == pytest.approx(found.right.min(), abs=0.005)
 
@@ -140,3 +141,18 @@ def test_whole_calibration_leaves_known_landmarks_out() -> None:
     assert result.landmarks == 40
     assert result.images == 40
     assert done[-1] == (40, 40)
+
+
+def test_relative_scores_forgive_a_crop_that_likes_every_text() -> None:
+    rng = np.random.default_rng(2)
+    seen = []
+    for liking in rng.normal(0, 20, 300).tolist():
+        scores = np.array([[30.0, 10, 10, 10], [10, 28, 14, 5]]) + liking
+        seen.append(Look(("mug", "desk"), scores, np.tile(ALL, (2, 1)), frozenset({"mug", "desk"})))
+    plain = calibrate(seen, TEXTS, LANDMARKS)
+    relative = calibrate(seen, TEXTS, LANDMARKS, relative=True)
+    assert plain.recall < 0.5
+    assert relative.recall == 1.0
+    assert relative.contrast is not None
+    assert relative.contrast.texts == tuple(TEXTS)
+    assert relative.thresholds.temperature == plain.thresholds.temperature

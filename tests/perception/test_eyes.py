@@ -1,19 +1,24 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import subprocess
 import sys
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
+import numpy as np
 import pytest
-from perception_scene import ScriptedDetector, ScriptedMatcher
+from perception_scene import ScriptedDetector, ScriptedMatcher, frame_of
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception import Eyes, EyesSettings, Thresholds, eyes, neural, open_eyes, split_landmarks
+from zavis_bt.perception.contrast import Contrast, ContrastMatcher
 from zavis_bt.perception.eyes_file import read_eyes, write_eyes
+from zavis_bt.types import Box
 
+BOX = Box(1, 1, 9, 9)
 GOOD = """\
 format: zavis-eyes/1
 detector: zavis-tiny-detector
@@ -103,7 +108,9 @@ def test_what_is_written_is_read_again(tmp_path: Path, monkeypatch: pytest.Monke
     (tmp_path / "weights" / "mine.pt").touch()
     monkeypatch.chdir(tmp_path)
     settings = EyesSettings("weights/mine.pt", "ViT-B-32@openai", "cuda", None, Thresholds(30, 20, 2.5, 0.1))
-    settings = replace(settings, checksums=(("clip", "abc"), ("detector", "def")))
+    settings = replace(
+        settings, checksums=(("clip", "abc"), ("detector", "def")), contrast=Contrast(("mug", "no"), 3.5)
+    )
     write_eyes(Path("out/my.eyes.yaml"), settings, {"data": "val"})
     monkeypatch.chdir("/")
     name, read = read_eyes(tmp_path / "out" / "my.eyes.yaml")
@@ -124,9 +131,10 @@ def test_neural_eyes_without_torch_say_what_to_install(monkeypatch: pytest.Monke
 
 
 def test_thresholds_are_known_for_the_papers_model_only() -> None:
-    assert neural.thresholds_of(EyesSettings(clip="ViT-B-32@openai")) == Thresholds(29.0, 24.0, 1.0)
+    for clip in ("ViT-B-32@openai", "vit-b-32-laion2b"):
+        assert neural.meaning_of(EyesSettings(clip=clip)) == (Thresholds(29.0, 24.0, 1.0), None)
     with pytest.raises(InputError, match=r"no thresholds are known for 'ViT-L-14@openai' \(measure them: zavis perc"):
-        neural.thresholds_of(EyesSettings(clip="ViT-L-14@openai"))
+        neural.meaning_of(EyesSettings(clip="ViT-L-14@openai"))
 
 
 def test_detectors_classes_decide_which_landmarks_are_known() -> None:
@@ -150,3 +158,18 @@ loaded = {"torch", "torchvision", "open_clip", "transformers"} & set(sys.modules
 assert not loaded, loaded
 """
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_relative_score_is_the_softmaxs_logarithm() -> None:
+    scores = {BOX: {"mug": 30.0, "desk": 26.0, "bed": 20.0}}
+    matcher = ContrastMatcher(ScriptedMatcher(scores), Contrast(("mug", "desk", "bed"), 2.0))
+    (row,) = matcher.match(frame_of([]), [BOX], ["mug", "bed"])
+    odds = np.exp(np.array([30.0, 26.0, 20.0]) / 2)
+    assert row == pytest.approx(2 * np.log(odds[[0, 2]] / odds.sum()))
+    assert matcher.match(frame_of([]), [], ["mug"]).shape == (0, 1)
+
+
+@pytest.mark.parametrize(("texts", "temperature"), [((), 1.0), (("mug",), 0.0), (("mug",), math.inf)])
+def test_contrast_out_of_range_is_refused(texts: tuple[str, ...], temperature: float) -> None:
+    with pytest.raises(InputError, match=r"^contrast: "):
+        Contrast(texts, temperature)

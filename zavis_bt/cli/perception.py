@@ -58,6 +58,10 @@ def calibrate(
         float, typer.Option(min=0.0001, max=0.5, help="Share of images in which what is not there may be seen.")
     ] = 0.02,
     detection: Annotated[float, typer.Option(min=0.0, max=0.99, help="Least confidence of a detector's box.")] = 0.0,
+    relative: Annotated[
+        bool,
+        typer.Option("--relative/--plain", help="Scores relative to those of all categories, or not."),
+    ] = True,
     landmarks: Annotated[str | None, typer.Option(help="Comma-separated landmark names instead of the usual.")] = None,
 ) -> None:
     """Measure a model's thresholds on labelled images, and write them down for --perception FILE."""
@@ -77,12 +81,15 @@ def calibrate(
     names = (*DEFAULT_KNOWN_LANDMARKS, *DEFAULT_UNKNOWN_LANDMARKS) if landmarks is None else _names(landmarks)
     console = Console(highlight=False)
     with _bar(console) as progress:
-        found = calibrated(eyes, labelled, names, count=images, false_alarms=false_alarms, progress=progress)
+        found = calibrated(
+            eyes, labelled, names, count=images, false_alarms=false_alarms, relative=relative, progress=progress
+        )
     settings = EyesSettings(
         str(eyes.about["detector"]),
         str(eyes.about["clip"]),
         device,
         thresholds=found.thresholds,
+        contrast=found.contrast,
         checksums=tuple(sorted(eyes.about["sha256"].items())),
     )
     write_eyes(out, settings, provenance(found, labelled, false_alarms))
@@ -123,6 +130,9 @@ def report(found: Calibration, false_alarms: float, console: Console) -> None:
     what = f"{found.landmark_recall:.0%} of the landmarks' boxes pass, {found.landmark_false:.0%} of the others"
     table.add_row("landmark", f"{limits.landmark:.2f}", what)
     table.add_row("temperature (T_o)", f"{limits.temperature:.3f}", f"{found.landmark_accuracy:.0%} best names right")
+    if found.contrast is not None:
+        others = f"scores are relative to those of {len(found.contrast.texts)} texts"
+        table.add_row("contrast (T)", f"{found.contrast.temperature:.3f}", others)
     console.print(table)
     for line in histogram(found.right, found.wrong, limits.match):
         console.print(line, markup=False)

@@ -5,19 +5,22 @@ Eyes look at labelled images as they would in a mission.
 - m_t: a text that nothing in the image answers to shall bring a candidate in at most a given share of the images.
 - The landmarks' threshold sets boxes of furniture that goes by a landmark's name apart from all others, by the
   greatest sum of both shares told rightly (Youden's index).
+- Where scores are to be relative to those of other texts (`Contrast`), these are the categories of the data, and T
+  makes softmax(m / T) over them the likeliest for what boxes show.
 - T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.calibration import Thresholds
+from zavis_bt.perception.contrast import Contrast
 from zavis_bt.perception.datasets import DetectionDataset
 from zavis_bt.perception.eyes import Eyes
 from zavis_bt.perception.looking import Look, look_at
@@ -33,6 +36,7 @@ class Calibration:
     """Thresholds, and how well they do on the images they are measured on."""
 
     thresholds: Thresholds
+    contrast: Contrast | None
     right: FloatArray
     """Scores of boxes with the name of what they show."""
     wrong: FloatArray
@@ -58,6 +62,7 @@ def calibrate(
     *,
     false_alarms: float = 0.02,
     detection: float = 0.0,
+    relative: bool = False,
 ) -> Calibration:
     """Return the thresholds that suit what eyes made of images.
 
@@ -67,10 +72,14 @@ def calibrate(
         landmarks: Names of landmarks that are told by matching; those that are no texts are left out.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
         detection: Confidence below which boxes were not looked at.
+        relative: Whether scores are to be relative to those of all texts.
 
     Raises:
         InputError: The images show too little to tell.
     """
+    contrast = _contrast(looks, texts) if relative else None
+    if contrast is not None:
+        looks = [replace(look, scores=contrast.apply(look.scores, look.scores)) for look in looks]
     right = np.concatenate([np.empty(0), *(_right(look, texts) for look in looks)])
     wrong = np.concatenate([np.empty(0), *(_wrong(look, texts) for look in looks)])
     _need(len(right), "boxes around what is annotated")
@@ -78,16 +87,15 @@ def calibrate(
     if not np.isfinite(match):  # rarer than asked for, even if every box of another thing were a candidate
         match = float(right.min())
     names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
-    columns = [texts.index(name) for name in names]
-    rows, truth = _landmark_rows(looks, columns, names)
+    rows, truth = _landmark_rows(looks, [texts.index(name) for name in names], names)
     is_landmark = truth >= 0
     _need(int(is_landmark.sum()), "unknown boxes around landmarks" + (f" ({', '.join(names)})" if names else ""))
-    best = rows.max(axis=1)
+    best, told = rows.max(axis=1), rows[is_landmark]
     landmark = _dividing(best, is_landmark)
-    told = rows[is_landmark]
     temperature = _temperature(told, truth[is_landmark])
     return Calibration(
         Thresholds(round(match, 2), round(landmark, 2), round(temperature, 3), detection),
+        contrast,
         right,
         wrong,
         recall=float((right >= match).mean()),
@@ -100,6 +108,17 @@ def calibrate(
     )
 
 
+def _contrast(looks: Sequence[Look], texts: Sequence[str]) -> Contrast:
+    """Return the contrast with all texts at the likeliest temperature."""
+    rows, truth = [np.empty((0, len(texts)))], []
+    for look in looks:
+        named = [k for k, shown in enumerate(look.shows) if shown in texts]
+        rows.append(look.scores[named])
+        truth += [texts.index(look.shows[k] or "") for k in named]
+    _need(len(truth), "boxes around what is annotated")
+    return Contrast(tuple(texts), round(_temperature(np.concatenate(rows), np.array(truth, dtype=np.intp)), 3))
+
+
 def _need(count: int, what: str) -> None:
     if count < _LEAST_PAIRS:
         raise InputError(f"calibrate: only {count} {what} (at least {_LEAST_PAIRS}: more images, or a better detector)")
@@ -107,23 +126,24 @@ def _need(count: int, what: str) -> None:
 
 def _right(look: Look, texts: Sequence[str]) -> FloatArray:
     """Return the scores of boxes with the name of what they show, as far as the two are matched."""
-    scores = [row[texts.index(name)] for row, name in zip(look.scores, look.shows, strict=True) if name in texts]
-    return np.array([score for score in scores if np.isfinite(score)])
+    pairs = [(k, texts.index(shown)) for k, shown in enumerate(look.shows) if shown in texts]
+    return np.array([look.scores[pair] for pair in pairs if look.matched[pair]])
 
 
 def _wrong(look: Look, texts: Sequence[str]) -> FloatArray:
     """Return the highest score of each text that nothing in the image answers to; -inf without a box."""
     absent = [column for column, text in enumerate(texts) if text not in look.present]
-    return np.asarray(look.scores[:, absent].max(axis=0, initial=-np.inf))
+    scores = np.where(look.matched, look.scores, -np.inf)
+    return np.asarray(scores[:, absent].max(axis=0, initial=-np.inf))
 
 
 def _landmark_rows(looks: Sequence[Look], columns: list[int], names: list[str]) -> tuple[FloatArray, NDArray[np.intp]]:
     """Return the scores (n, m) of ``unknown`` boxes with the landmarks' names, and the index of the right one or -1."""
     rows, truth = [np.empty((0, len(columns)))], []
     for look in looks:
-        for scores, shown in zip(look.scores[:, columns], look.shows, strict=True):
-            if columns and np.isfinite(scores).all():
-                rows.append(scores[None])
+        for k, shown in enumerate(look.shows):
+            if columns and look.matched[k, columns].all():
+                rows.append(look.scores[k, columns][None])
                 truth.append(names.index(shown) if shown in names else -1)
     return np.concatenate(rows), np.array(truth, dtype=np.intp)
 
@@ -153,6 +173,7 @@ def calibrated(
     *,
     count: int = 400,
     false_alarms: float = 0.02,
+    relative: bool = False,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Calibration:
     """Look at labelled images and return the thresholds.
@@ -163,6 +184,7 @@ def calibrated(
         landmarks: Names of landmarks.
         count: At most so many images, evenly spread over the data set.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
+        relative: Whether scores are to be relative to those of the data's categories.
         progress: Told how many images are done, of how many.
 
     Raises:
@@ -177,4 +199,5 @@ def calibrated(
         progress(len(looks), len(indices))
     known = {key(name) for name in eyes.classes or ()}
     told = [name for name in landmarks if key(name) not in known]
-    return calibrate(looks, texts, told, false_alarms=false_alarms, detection=eyes.thresholds.detection)
+    detection = eyes.thresholds.detection
+    return calibrate(looks, texts, told, false_alarms=false_alarms, detection=detection, relative=relative)

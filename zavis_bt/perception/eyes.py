@@ -15,6 +15,7 @@ from typing import Any
 
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.perception.calibration import Thresholds
+from zavis_bt.perception.contrast import Contrast
 from zavis_bt.protocols import Detector, Matcher
 
 ENTRY_POINT_GROUP = "zavis_bt.perception"
@@ -35,6 +36,8 @@ class EyesSettings:
     """CPU threads of the networks; None for the library's choice. Results may differ in the last digits."""
     thresholds: Thresholds | None = None
     """What the scores of these weights mean."""
+    contrast: Contrast | None = None
+    """What scores are relative to; None for plain ones. Belongs to the thresholds."""
     checksums: tuple[tuple[str, str], ...] = ()
     """SHA-256 of the weights, by ``detector`` and ``clip``, that the thresholds were measured with."""
     options: Mapping[str, Any] = field(default_factory=dict, hash=False)

@@ -6,7 +6,7 @@ Files and folders that exist beside the eyes file are taken from there; other na
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from zavis_bt.documents import check, read_document
 from zavis_bt.errors import InputError
 from zavis_bt.perception.calibration import Thresholds
+from zavis_bt.perception.contrast import Contrast
 from zavis_bt.perception.eyes import EyesSettings, find_eyes, is_file
 
 FORMAT = "zavis-eyes/1"
@@ -34,6 +35,11 @@ class _Thresholds(_Entry):
     detection: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
+class _Contrast(_Entry):
+    temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    texts: Annotated[tuple[Text, ...], Field(min_length=1)]
+
+
 class _Calibrated(_Entry):
     """Where the thresholds come from; only the checksums are read again."""
 
@@ -49,6 +55,7 @@ class _File(_Entry):
     clip: Text | None = None
     device: Text = "cpu"
     thresholds: _Thresholds | None = None
+    contrast: _Contrast | None = None
     calibrated: _Calibrated | None = None
     options: dict[str, Any] = Field(default_factory=dict)
 
@@ -71,6 +78,7 @@ def read_eyes(path: Path) -> tuple[str, EyesSettings]:
         clip=_beside(path, file.clip),
         device=file.device,
         thresholds=None if file.thresholds is None else Thresholds(**file.thresholds.model_dump()),
+        contrast=None if file.contrast is None else Contrast(file.contrast.texts, file.contrast.temperature),
         checksums=() if file.calibrated is None else tuple(sorted(file.calibrated.weights.items())),
         options=file.options,
         where=str(path),
@@ -99,6 +107,11 @@ def write_eyes(path: Path, settings: EyesSettings, calibrated: Mapping[str, Any]
     if settings.thresholds is not None:
         names = "match", "landmark", "temperature", "detection"
         entries["thresholds"] = {name: getattr(settings.thresholds, name) for name in names}
+    if settings.contrast is not None:
+        entries["contrast"] = {
+            "temperature": settings.contrast.temperature,
+            "texts": _flow_list(settings.contrast.texts),
+        }
     entries["calibrated"] = {**calibrated, "weights": dict(settings.checksums)}
     yaml = YAML()
     yaml.indent(mapping=2, sequence=4, offset=2)
@@ -108,6 +121,15 @@ def write_eyes(path: Path, settings: EyesSettings, calibrated: Mapping[str, Any]
             yaml.dump(entries, stream)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+
+
+def _flow_list(texts: Sequence[str]) -> Any:
+    """Return a list that is written in one line."""
+    from ruamel.yaml.comments import CommentedSeq
+
+    listed = CommentedSeq(texts)
+    listed.fa.set_flow_style()
+    return listed
 
 
 def _beside(file: Path, name: str | None) -> str | None:

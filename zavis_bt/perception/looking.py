@@ -28,7 +28,9 @@ class Look:
     shows: tuple[str | None, ...]
     """(n,) category that each box shows; None for nothing."""
     scores: FloatArray
-    """(n, m) of n boxes with m texts; -inf where the two are not matched in a mission."""
+    """(n, m) of n boxes with m texts."""
+    matched: NDArray[np.bool_]
+    """(n, m) whether the two would be matched in a mission."""
     present: frozenset[str]
     """Categories that are annotated, be it as ignored."""
 
@@ -55,11 +57,11 @@ def look_at(eyes: Eyes, images: DetectionDataset, indices: Sequence[int], texts:
                 boxes.append(found.box)
                 labels.append(found.label)
                 shows.append(shown)
-        scores = np.full((len(boxes), len(texts)), -np.inf)
-        if boxes:
-            matched = np.array([[_is_matched(label, text) for text in texts] for label in labels], dtype=np.bool_)
-            scores = np.where(matched, eyes.matcher.match(frame, boxes, texts), -np.inf)
-        yield Look(tuple(shows), scores, frozenset(annotation.category for annotation in annotations))
+        matched = np.array([[_is_matched(label, text) for text in texts] for label in labels], dtype=np.bool_)
+        shape = len(boxes), len(texts)
+        scores = np.asarray(eyes.matcher.match(frame, boxes, texts), dtype=np.float64) if boxes else np.empty(shape)
+        present = frozenset(annotation.category for annotation in annotations)
+        yield Look(tuple(shows), scores, matched.reshape(shape), present)
 
 
 def frame_of(rgb: NDArray[np.uint8], stamp: float = 0.0) -> RgbdFrame:

@@ -11,13 +11,16 @@ from pathlib import Path
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.calibration import Thresholds
+from zavis_bt.perception.contrast import Contrast, ContrastMatcher
 from zavis_bt.perception.eyes import Eyes, EyesSettings
+from zavis_bt.perception.eyes_file import read_eyes
+from zavis_bt.protocols import Matcher
 
 DETECTOR, CLIP = "zavis-tiny-detector", "zavis-tiny"
 """Weights that come along; trained on rendered images."""
 _LIBRARIES = ("torch", "torchvision", "open_clip")
 _EXTRA = "pip install 'zavis_bt[neural]'"
-_PAPERS_MODEL = "ViT-B-32"  # whose threshold of 29 the paper gives
+_PAPERS_MODEL = "vit-b-32"  # whose threshold of 29 the paper gives
 
 
 def open_eyes(settings: EyesSettings) -> Eyes:
@@ -48,9 +51,11 @@ def _opened(settings: EyesSettings) -> Eyes:
     architecture, pretrained, weights = find_clip(clip_name)
     checksums = {"detector": checksum(file)} | ({"clip": checksum(weights)} if weights else {})
     _check_checksums(settings, checksums)
-    thresholds = settings.thresholds or thresholds_of(settings)
+    thresholds, contrast = meaning_of(settings)
     detector = NeuralDetector.load(file, device=settings.device)
-    matcher = ClipMatcher(ClipModel.load(architecture, pretrained, device=settings.device))
+    matcher: Matcher = ClipMatcher(ClipModel.load(architecture, pretrained, device=settings.device))
+    if contrast is not None:
+        matcher = ContrastMatcher(matcher, contrast)
     about = {"detector": detector_name, "clip": clip_name, "sha256": checksums, "device": settings.device}
     return Eyes(detector, matcher, thresholds, tuple(detector.classes), about)
 
@@ -88,22 +93,21 @@ def _prepare(settings: EyesSettings) -> None:
         torch.set_num_threads(settings.threads)
 
 
-def thresholds_of(settings: EyesSettings) -> Thresholds:
-    """Return the thresholds that come along with an image-text model.
+def meaning_of(settings: EyesSettings) -> tuple[Thresholds, Contrast | None]:
+    """Return thresholds, and what scores are relative to: those given, or those that come along with a model.
 
     Raises:
-        InputError: None come along with this one.
+        InputError: None are given, and none come along with this model.
     """
-    from zavis_bt.perception.eyes_file import read_eyes
-
+    if settings.thresholds is not None:
+        return settings.thresholds, settings.contrast
     clip = settings.clip or CLIP
     shipped = Path(str(files("zavis_bt.perception"))) / "weights" / f"{clip}.eyes.yaml"
     if shipped.is_file():
         _, known = read_eyes(shipped)
-        if known.thresholds is not None:
-            return known.thresholds
-    if clip.startswith(_PAPERS_MODEL):
-        return Thresholds()
+        return known.thresholds or Thresholds(), known.contrast
+    if clip.lower().startswith(_PAPERS_MODEL):
+        return Thresholds(), None
     raise InputError(
         f"{settings.where}: clip: no thresholds are known for '{clip}' "
         f"(measure them: zavis perception calibrate DATA --clip {clip} --out my.eyes.yaml)"
