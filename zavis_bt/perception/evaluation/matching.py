@@ -65,9 +65,8 @@ def judge_detections(detections: Table, truths: Table, pairs: Pairs, unknown: in
     right = np.zeros(count, dtype=np.bool_)
     claims = order[(found[order] >= 0) & ~ignored[order]]  # best score first: the first claim of a thing stands
     right[claims[np.unique(found[claims], return_index=True)[1]]] = True
-    strange = pairs.truth[(pairs.iou > LEAST_IOU)], pairs.detection[(pairs.iou > LEAST_IOU)]
     open_error = np.zeros(count, dtype=np.bool_)
-    open_error[strange[1][(truths.label[strange[0]] == unknown) & ~truths.ignored[strange[0]]]] = True
+    open_error[pairs.detection[(pairs.iou > LEAST_IOU) & truths.of(unknown)[pairs.truth]]] = True
     return Verdicts(right, ignored, open_error & (detections.label != unknown) & ~ignored, order)
 
 

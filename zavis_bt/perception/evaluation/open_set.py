@@ -149,7 +149,7 @@ def _rates(detections: Table, truths: Table, verdicts: Verdicts, label: int) -> 
 
 
 def _count(truths: Table, label: int) -> int:
-    return int(((truths.label == label) & ~truths.ignored).sum())
+    return int(truths.of(label).sum())
 
 
 def _mean(values: NDArray[np.floating] | NDArray[np.integer]) -> float:

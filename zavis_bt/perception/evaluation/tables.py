@@ -53,6 +53,11 @@ class Table:
     def __len__(self) -> int:
         return len(self.image)
 
+    def of(self, label: int) -> NDArray[np.bool_]:
+        """Return which boxes are of a class and count."""
+        mask: NDArray[np.bool_] = (self.label == label) & ~self.ignored
+        return mask
+
 
 class Classes:
     """The known classes by number; their spelling does not matter."""
