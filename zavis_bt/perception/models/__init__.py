@@ -1,6 +1,6 @@
 """Models: which there are, where they lie, and whether they are what they were."""
 
-from zavis_bt.perception.models.download import download
+from zavis_bt.perception.models.fetching import download
 from zavis_bt.perception.models.finding import find_weights
 from zavis_bt.perception.models.forms import check_form, check_weights_file
 from zavis_bt.perception.models.manifest import WEIGHTS, ModelEntry, manifest, remedy

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import urllib.error
@@ -78,15 +79,23 @@ def _knock(name: str) -> None:
     """Ask the hub for a sign of life: its library goes on asking for half a minute where there is none."""
     from huggingface_hub import constants
 
+    endpoint = _endpoint()
     if constants.HF_HUB_OFFLINE:
         raise InputError(f"model '{name}': HF_HUB_OFFLINE forbids to ask the hub (unset it; or {by_hand(name)})")
-    request = urllib.request.Request(constants.ENDPOINT, method="HEAD")
+    request = urllib.request.Request(endpoint, method="HEAD")
     try:
         urllib.request.urlopen(request, timeout=PATIENCE).close()
     except urllib.error.HTTPError:
         return  # it answers
     except (urllib.error.URLError, TimeoutError, ConnectionError) as error:
-        raise _out_of_reach(name, constants.ENDPOINT, error) from error
+        raise _out_of_reach(name, endpoint, error) from error
+
+
+def _endpoint() -> str:
+    """Return the hub's address, or that of a mirror that ``HF_ENDPOINT`` names."""
+    from huggingface_hub import constants
+
+    return os.environ.get("HF_ENDPOINT") or constants.ENDPOINT
 
 
 def _fetch_any(name: str, hub: str, files: tuple[str, ...], folder: Path) -> None:
@@ -95,7 +104,7 @@ def _fetch_any(name: str, hub: str, files: tuple[str, ...], folder: Path) -> Non
 
     for file in files:
         try:
-            hf_hub_download(hub, file, local_dir=folder, etag_timeout=PATIENCE)
+            hf_hub_download(hub, file, local_dir=folder, endpoint=_endpoint(), etag_timeout=PATIENCE)
             return
         except RemoteEntryNotFoundError:
             continue
@@ -105,6 +114,5 @@ def _fetch_any(name: str, hub: str, files: tuple[str, ...], folder: Path) -> Non
 
 
 def _out_of_reach(name: str, place: str, error: Exception) -> InputError:
-    reason = getattr(error, "reason", None) or error
-    why = " ".join(str(reason).split()) or type(error).__name__
+    why = " ".join(str(error).removeprefix("<urlopen error ").removesuffix(">").split()) or type(error).__name__
     return InputError(f"model '{name}': {place} is out of reach: {why} ({by_hand(name)})")
