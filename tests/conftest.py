@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # of torch and BLAS; pytest -n has a process for each core already
+
 
 def pytest_configure() -> None:
     """Let Ctrl-C work here and in what tests start, even if a shell began the tests in the background without it."""
