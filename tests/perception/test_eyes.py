@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from perception_scene import ScriptedDetector, ScriptedMatcher, frame_of
+from perception_scene import ScriptedDetector, ScriptedMatcher, frame_of, unknown
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception import Eyes, EyesSettings, Thresholds, eyes, neural, open_eyes, split_landmarks
 from zavis_bt.perception.contrast import Contrast, ContrastMatcher
 from zavis_bt.perception.eyes_file import read_eyes, write_eyes
+from zavis_bt.perception.several_scales import SeveralScales
 from zavis_bt.types import Box
 
 BOX = Box(1, 1, 9, 9)
@@ -107,7 +108,9 @@ def test_what_is_written_is_read_again(tmp_path: Path, monkeypatch: pytest.Monke
     (tmp_path / "out").mkdir()
     (tmp_path / "weights" / "mine.pt").touch()
     monkeypatch.chdir(tmp_path)
-    settings = EyesSettings("weights/mine.pt", "ViT-B-32@openai", "cuda", None, Thresholds(30, 20, 2.5, 0.1))
+    settings = EyesSettings(
+        "weights/mine.pt", "ViT-B-32@openai", "cuda", (320, 640), None, Thresholds(30, 20, 2.5, 0.1)
+    )
     settings = replace(
         settings, checksums=(("clip", "abc"), ("detector", "def")), contrast=Contrast(("mug", "no"), 3.5)
     )
@@ -132,9 +135,11 @@ def test_neural_eyes_without_torch_say_what_to_install(monkeypatch: pytest.Monke
 
 def test_thresholds_are_known_for_the_papers_model_only() -> None:
     for clip in ("ViT-B-32@openai", "vit-b-32-laion2b"):
-        assert neural.meaning_of(EyesSettings(clip=clip)) == (Thresholds(29.0, 24.0, 1.0), None)
+        settings = neural.with_meaning(EyesSettings(clip=clip))
+        assert settings.thresholds == Thresholds(29.0, 24.0, 1.0)
+        assert settings.contrast is None
     with pytest.raises(InputError, match=r"no thresholds are known for 'ViT-L-14@openai' \(measure them: zavis perc"):
-        neural.meaning_of(EyesSettings(clip="ViT-L-14@openai"))
+        neural.with_meaning(EyesSettings(clip="ViT-L-14@openai"))
 
 
 def test_detectors_classes_decide_which_landmarks_are_known() -> None:
@@ -173,3 +178,11 @@ def test_relative_score_is_the_softmaxs_logarithm() -> None:
 def test_contrast_out_of_range_is_refused(texts: tuple[str, ...], temperature: float) -> None:
     with pytest.raises(InputError, match=r"^contrast: "):
         Contrast(texts, temperature)
+
+
+def test_several_scales_keep_the_best_box_of_each_thing() -> None:
+    other = Box(20, 20, 40, 40)
+    small = ScriptedDetector(unknown(Box(1, 1, 9, 8.5), 0.9))
+    large = ScriptedDetector(unknown(BOX, 0.8), unknown(other, 0.95))
+    found = SeveralScales((small, large)).detect(frame_of([]))
+    assert [(one.box, one.score) for one in found] == [(other, 0.95), (Box(1, 1, 9, 8.5), 0.9)]

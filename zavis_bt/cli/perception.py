@@ -53,6 +53,9 @@ def calibrate(
         str | None, typer.Option(help="Image-text model: a name, MODEL@PRETRAINED of open_clip, or a folder.")
     ] = None,
     device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
+    widths: Annotated[
+        str | None, typer.Option(help="Working widths of the detector [px], comma-separated; its own if not given.")
+    ] = None,
     images: Annotated[int, typer.Option(min=1, help="Look at so many images, spread over the data.")] = 400,
     false_alarms: Annotated[
         float, typer.Option(min=0.0001, max=0.5, help="Share of images in which what is not there may be seen.")
@@ -76,7 +79,8 @@ def calibrate(
     if not out.parent.is_dir():
         raise InputError(f"--out: there is no folder {out.parent} (make it first)")
     labelled = open_dataset(data)
-    settings = EyesSettings(detector, clip, device, thresholds=Thresholds(detection=detection))
+    sizes = _widths(widths)
+    settings = EyesSettings(detector, clip, device, sizes, thresholds=Thresholds(detection=detection))
     eyes = open_eyes("neural", settings)
     names = (*DEFAULT_KNOWN_LANDMARKS, *DEFAULT_UNKNOWN_LANDMARKS) if landmarks is None else _names(landmarks)
     console = Console(highlight=False)
@@ -88,6 +92,7 @@ def calibrate(
         str(eyes.about["detector"]),
         str(eyes.about["clip"]),
         device,
+        sizes,
         thresholds=found.thresholds,
         contrast=found.contrast,
         checksums=tuple(sorted(eyes.about["sha256"].items())),
@@ -161,6 +166,13 @@ def _quantiles(scores: FloatArray) -> dict[str, float]:
     finite = scores[np.isfinite(scores)]
     values = np.quantile(finite, _QUANTILES) if len(finite) else np.zeros(len(_QUANTILES))
     return {f"{quantile:g}": round(float(value), 2) for quantile, value in zip(_QUANTILES, values, strict=True)}
+
+
+def _widths(text: str | None) -> tuple[int, ...]:
+    try:
+        return () if text is None else tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"--widths: '{text}' are no whole numbers (e.g. 320,640)") from None
 
 
 def _names(text: str) -> tuple[str, ...]:

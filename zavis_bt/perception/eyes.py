@@ -32,6 +32,8 @@ class EyesSettings:
     """Image-text model: a name, ``MODEL@PRETRAINED`` of open_clip, or a folder."""
     device: str = "cpu"
     """``cpu`` or ``cuda``."""
+    widths: tuple[int, ...] = ()
+    """To which images are scaled down for the detector [px], which looks at each; its own if none is given."""
     threads: int | None = None
     """CPU threads of the networks; None for the library's choice. Results may differ in the last digits."""
     thresholds: Thresholds | None = None

@@ -54,6 +54,7 @@ class _File(_Entry):
     detector: Text | None = None
     clip: Text | None = None
     device: Text = "cpu"
+    widths: tuple[Annotated[int, Field(ge=32, le=8192)], ...] = ()
     thresholds: _Thresholds | None = None
     contrast: _Contrast | None = None
     calibrated: _Calibrated | None = None
@@ -77,6 +78,7 @@ def read_eyes(path: Path) -> tuple[str, EyesSettings]:
         detector=_beside(path, file.detector),
         clip=_beside(path, file.clip),
         device=file.device,
+        widths=file.widths,
         thresholds=None if file.thresholds is None else Thresholds(**file.thresholds.model_dump()),
         contrast=None if file.contrast is None else Contrast(file.contrast.texts, file.contrast.temperature),
         checksums=() if file.calibrated is None else tuple(sorted(file.calibrated.weights.items())),
@@ -104,6 +106,8 @@ def write_eyes(path: Path, settings: EyesSettings, calibrated: Mapping[str, Any]
     entries |= {kind: _seen_from(path, name) for kind, name in weights.items() if name is not None}
     if settings.device != "cpu":
         entries["device"] = settings.device
+    if settings.widths:
+        entries["widths"] = _flow_list(settings.widths)
     if settings.thresholds is not None:
         names = "match", "landmark", "temperature", "detection"
         entries["thresholds"] = {name: getattr(settings.thresholds, name) for name in names}
@@ -123,11 +127,11 @@ def write_eyes(path: Path, settings: EyesSettings, calibrated: Mapping[str, Any]
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
 
 
-def _flow_list(texts: Sequence[str]) -> Any:
+def _flow_list(values: Sequence[str] | Sequence[int]) -> Any:
     """Return a list that is written in one line."""
     from ruamel.yaml.comments import CommentedSeq
 
-    listed = CommentedSeq(texts)
+    listed = CommentedSeq(values)
     listed.fa.set_flow_style()
     return listed
 

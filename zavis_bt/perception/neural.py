@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
-from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.calibration import Thresholds
-from zavis_bt.perception.contrast import Contrast, ContrastMatcher
+from zavis_bt.perception.contrast import ContrastMatcher
 from zavis_bt.perception.eyes import Eyes, EyesSettings
 from zavis_bt.perception.eyes_file import read_eyes
-from zavis_bt.protocols import Matcher
+from zavis_bt.perception.models import WEIGHTS, ModelStore, find_weights
+from zavis_bt.perception.several_scales import SeveralScales
+from zavis_bt.protocols import Detector, Matcher
 
 DETECTOR, CLIP = "zavis-tiny-detector", "zavis-tiny"
 """Weights that come along; trained on rendered images."""
@@ -43,7 +46,6 @@ def open_eyes(settings: EyesSettings) -> Eyes:
 def _opened(settings: EyesSettings) -> Eyes:
     from zavis_bt.perception.clip import ClipMatcher, ClipModel
     from zavis_bt.perception.detector import NeuralDetector
-    from zavis_bt.perception.models import find_weights
 
     _prepare(settings)
     detector_name, clip_name = settings.detector or DETECTOR, settings.clip or CLIP
@@ -51,13 +53,15 @@ def _opened(settings: EyesSettings) -> Eyes:
     architecture, pretrained, weights = find_clip(clip_name)
     checksums = {"detector": checksum(file)} | ({"clip": checksum(weights)} if weights else {})
     _check_checksums(settings, checksums)
-    thresholds, contrast = meaning_of(settings)
-    detector = NeuralDetector.load(file, device=settings.device)
+    settings = with_meaning(settings)
+    scales = [NeuralDetector.load(file, device=settings.device, width=width) for width in settings.widths or (None,)]
+    detector: Detector = scales[0] if len(scales) == 1 else SeveralScales(scales)
     matcher: Matcher = ClipMatcher(ClipModel.load(architecture, pretrained, device=settings.device))
-    if contrast is not None:
-        matcher = ContrastMatcher(matcher, contrast)
-    about = {"detector": detector_name, "clip": clip_name, "sha256": checksums, "device": settings.device}
-    return Eyes(detector, matcher, thresholds, tuple(detector.classes), about)
+    if settings.contrast is not None:
+        matcher = ContrastMatcher(matcher, settings.contrast)
+    about: dict[str, Any] = {"detector": detector_name, "clip": clip_name, "sha256": checksums}
+    about |= {"device": settings.device, "widths": list(settings.widths), "relative": settings.contrast is not None}
+    return Eyes(detector, matcher, settings.thresholds or Thresholds(), tuple(scales[0].classes), about)
 
 
 def find_clip(name: str) -> tuple[str, str | None, Path | None]:
@@ -70,8 +74,6 @@ def find_clip(name: str) -> tuple[str, str | None, Path | None]:
     Raises:
         InputError: The weights are missing or damaged.
     """
-    from zavis_bt.perception.models import ModelStore, find_weights
-
     model, at, pretrained = name.partition("@")
     if at:
         return model, pretrained, Path(pretrained) if Path(pretrained).is_file() else None
@@ -93,21 +95,22 @@ def _prepare(settings: EyesSettings) -> None:
         torch.set_num_threads(settings.threads)
 
 
-def meaning_of(settings: EyesSettings) -> tuple[Thresholds, Contrast | None]:
-    """Return thresholds, and what scores are relative to: those given, or those that come along with a model.
+def with_meaning(settings: EyesSettings) -> EyesSettings:
+    """Return the settings with thresholds and all that belongs to them: as given, or as they come along with a model.
 
     Raises:
         InputError: None are given, and none come along with this model.
     """
     if settings.thresholds is not None:
-        return settings.thresholds, settings.contrast
+        return settings
     clip = settings.clip or CLIP
-    shipped = Path(str(files("zavis_bt.perception"))) / "weights" / f"{clip}.eyes.yaml"
+    shipped = WEIGHTS / f"{clip}.eyes.yaml"
     if shipped.is_file():
         _, known = read_eyes(shipped)
-        return known.thresholds or Thresholds(), known.contrast
+        widths = settings.widths or known.widths
+        return replace(settings, thresholds=known.thresholds, contrast=known.contrast, widths=widths)
     if clip.lower().startswith(_PAPERS_MODEL):
-        return Thresholds(), None
+        return replace(settings, thresholds=Thresholds(), contrast=None)
     raise InputError(
         f"{settings.where}: clip: no thresholds are known for '{clip}' "
         f"(measure them: zavis perception calibrate DATA --clip {clip} --out my.eyes.yaml)"
