@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from zavis_bt.errors import InputError
 from zavis_bt.perception.evaluation.tables import Table
 from zavis_bt.types import FloatArray
 
@@ -21,8 +22,14 @@ def average_precisions(detections: Table, truths: Table, known: int) -> FloatArr
         detections: Those labelled unknown do not count.
         truths: Those of unknown class do not count; ignored ones are COCO's crowds.
         known: Number of known classes.
+
+    Raises:
+        InputError: torchmetrics is not installed.
     """
-    from torchmetrics.detection import MeanAveragePrecision
+    try:
+        from torchmetrics.detection import MeanAveragePrecision
+    except ImportError as error:
+        raise InputError("K-mAP: needs torchmetrics and pycocotools (pip install 'zavis_bt[neural]')") from error
 
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Encountered more than", UserWarning)  # than 100 detections in one image
