@@ -149,10 +149,16 @@ def test_relative_scores_forgive_a_crop_that_likes_every_text() -> None:
     for liking in rng.normal(0, 20, 300).tolist():
         scores = np.array([[30.0, 10, 10, 10], [10, 28, 14, 5]]) + liking
         seen.append(Look(("mug", "desk"), scores, np.tile(ALL, (2, 1)), frozenset({"mug", "desk"})))
-    plain = calibrate(seen, TEXTS, LANDMARKS)
-    relative = calibrate(seen, TEXTS, LANDMARKS, relative=True)
+    plain = calibrate(seen, TEXTS, LANDMARKS, relative=False)
+    relative = calibrate(seen, TEXTS, LANDMARKS)
     assert plain.recall < 0.5
     assert relative.recall == 1.0
     assert relative.contrast is not None
     assert relative.contrast.texts == tuple(TEXTS)
     assert relative.thresholds.temperature == plain.thresholds.temperature
+
+
+def test_plain_scores_are_kept_where_relative_ones_help_little() -> None:
+    seen = looks(100, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
+    assert calibrate(seen, TEXTS, LANDMARKS).contrast is None
+    assert calibrate(seen, TEXTS, LANDMARKS, relative=True).contrast is not None

@@ -62,9 +62,8 @@ def calibrate(
     ] = 0.02,
     detection: Annotated[float, typer.Option(min=0.0, max=0.99, help="Least confidence of a detector's box.")] = 0.0,
     relative: Annotated[
-        bool,
-        typer.Option("--relative/--plain", help="Scores relative to those of all categories, or not."),
-    ] = True,
+        bool | None, typer.Option("--relative/--plain", help="Scores relative to those of all categories, or not.")
+    ] = None,
     landmarks: Annotated[str | None, typer.Option(help="Comma-separated landmark names instead of the usual.")] = None,
 ) -> None:
     """Measure a model's thresholds on labelled images, and write them down for --perception FILE."""

@@ -5,8 +5,8 @@ Eyes look at labelled images as they would in a mission.
 - m_t: a text that nothing in the image answers to shall bring a candidate in at most a given share of the images.
 - The landmarks' threshold sets boxes of furniture that goes by a landmark's name apart from all others, by the
   greatest sum of both shares told rightly (Youden's index).
-- Where scores are to be relative to those of other texts (`Contrast`), these are the categories of the data, and T
-  makes softmax(m / T) over them the likeliest for what boxes show.
+- Scores may be relative to those of other texts (`Contrast`), which helps some models much and others not at all. The
+  texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
 - T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.
 """
 
@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,7 @@ from zavis_bt.perception.looking import Look, look_at
 from zavis_bt.perception.naming import key
 from zavis_bt.types import FloatArray
 
+_MUCH = 0.05  # share of right pairs
 _LEAST_PAIRS = 30  # from which a threshold means something
 _TEMPERATURES = np.geomspace(0.05, 50.0, 241)
 
@@ -62,7 +64,7 @@ def calibrate(
     *,
     false_alarms: float = 0.02,
     detection: float = 0.0,
-    relative: bool = False,
+    relative: bool | None = None,
 ) -> Calibration:
     """Return the thresholds that suit what eyes made of images.
 
@@ -72,11 +74,16 @@ def calibrate(
         landmarks: Names of landmarks that are told by matching; those that are no texts are left out.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
         detection: Confidence below which boxes were not looked at.
-        relative: Whether scores are to be relative to those of all texts.
+        relative: Whether scores are to be relative to those of all texts; None for whichever tells much more, the
+            paper's plain scores if in doubt.
 
     Raises:
         InputError: The images show too little to tell.
     """
+    if relative is None:
+        settle = partial(calibrate, looks, texts, landmarks, false_alarms=false_alarms, detection=detection)
+        plain, other = settle(relative=False), settle(relative=True)
+        return other if other.recall > plain.recall + _MUCH else plain
     contrast = _contrast(looks, texts) if relative else None
     if contrast is not None:
         looks = [replace(look, scores=contrast.apply(look.scores, look.scores)) for look in looks]
@@ -173,7 +180,7 @@ def calibrated(
     *,
     count: int = 400,
     false_alarms: float = 0.02,
-    relative: bool = False,
+    relative: bool | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Calibration:
     """Look at labelled images and return the thresholds.
@@ -184,7 +191,7 @@ def calibrated(
         landmarks: Names of landmarks.
         count: At most so many images, evenly spread over the data set.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
-        relative: Whether scores are to be relative to those of the data's categories.
+        relative: Whether scores are to be relative to those of the data's categories; None for the better.
         progress: Told how many images are done, of how many.
 
     Raises:
