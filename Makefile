@@ -69,7 +69,7 @@ clean:
 	@touch $@
 
 .venv/.dev: .venv/.made pyproject.toml
-	$(SAY) "installing zavis_bt and the tools of its tests (about a minute at first)"
+	$(SAY) "installing zavis_bt, torch and the tools of its tests (some minutes and gigabytes at first)"
 	@$(PIP) install --editable '.[dev]'
 	@touch $@ .venv/.core
 
