@@ -1,0 +1,154 @@
+"""`zavis detector`: train the open-set detector, judge it, and write it for use."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from zavis_bt.errors import InputError
+
+if TYPE_CHECKING:
+    from zavis_bt.perception.detector import DetectorConfig
+    from zavis_bt.perception.detector.pseudo_labels import Labelling
+
+_CLIP = "zavis-tiny"
+_WEIGHTS_FILE = "detector.safetensors"
+
+app = typer.Typer(help="Train the open-set detector, judge it, write it for use.", no_args_is_help=True)
+
+
+@app.command()
+def train(
+    data: Annotated[
+        str, typer.Argument(metavar="DATA", help="Images in COCO's or Pascal VOC's form, or sim:COUNT[:SEED].")
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the training.")],
+    known: Annotated[
+        str | None, typer.Option(help="Comma-separated known classes; the usual known landmarks if not given.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="zavis (the paper's), ore, or faster_rcnn.")] = "zavis",
+    backbone: Annotated[str, typer.Option(help="tiny, resnet50_fpn or resnet50_c4.")] = "tiny",
+    weights: Annotated[Path | None, typer.Option(help="torchvision's checkpoint of ResNet-50 to begin with.")] = None,
+    clip: Annotated[str, typer.Option(help="Image-text model that tells things from background.")] = _CLIP,
+    iterations: Annotated[int, typer.Option(min=1, help="Steps of the optimiser.")] = 4000,
+    batch: Annotated[int, typer.Option(min=1, help="Images a step.")] = 16,
+    rate: Annotated[
+        float | None, typer.Option("--learning-rate", min=1e-8, help="At its highest; by the backbone.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in --out.")] = False,
+    device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
+    workers: Annotated[int, typer.Option("--workers", "-j", min=0, help="Processes that read images.")] = 0,
+    width: Annotated[int | None, typer.Option(min=32, help="Of what is learnt from [px]; by the backbone.")] = None,
+) -> None:
+    """Train a detector on labelled images; an interrupted training goes on with --resume."""
+    from zavis_bt.cli.detector_data import open_images
+    from zavis_bt.cli.detector_progress import progress_bar
+    from zavis_bt.perception.detector import Checkpoint, Training, TrainingLog, TrainingSettings, Views, save_detector
+    from zavis_bt.perception.detector.building import FACTS, build_network
+
+    config = _config(known, method, backbone, width, pretrained=weights is not None)
+    check_device(device)
+    images = open_images(data)
+    if not resume and (out / "checkpoint.pt").exists():
+        raise InputError(f"--out: {out} holds a training (go on with --resume, or name a new folder)")
+    before = Checkpoint.load(out) if resume else None
+    network = build_network(config, seed, weights)
+    views = Views() if backbone == "tiny" else Views(width or 800, zoom=1.5, large=0.0)
+    peak = rate or (2e-3 if backbone == "tiny" else 1e-4)
+    settings = TrainingSettings(iterations, batch, peak, seed, workers, views=views)
+    training = Training(network, images, settings, _labelling(method, clip, device), device)
+    if before is not None:
+        training.resume(before)
+    facts = {"data": images.name, "rendered": images.rendered, "images": len(images), "seed": seed}
+    facts |= {"iterations": iterations, "batch": batch, "learning_rate": peak, "clip": clip}
+    out.mkdir(parents=True, exist_ok=True)
+    (out / FACTS).write_text(json.dumps(facts))
+    with TrainingLog(out) as log, progress_bar(iterations) as progress:
+        training.run(log, lambda state: state.save(out), progress)
+    save_detector(training.network, out / _WEIGHTS_FILE, facts)
+    typer.echo(f"written: {out / _WEIGHTS_FILE}")
+
+
+@app.command("eval")
+def evaluate(
+    detector: Annotated[str, typer.Argument(metavar="DETECTOR", help="Weights: a name or a file.")],
+    data: Annotated[str, typer.Argument(metavar="DATA", help="As for train.")],
+    width: Annotated[
+        int | None, typer.Option(min=32, help="Working width [px]; the detector's own if not given.")
+    ] = None,
+    images: Annotated[int | None, typer.Option(min=1, help="Only the first so many images.")] = None,
+    device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one line of JSON.")] = False,
+    report: Annotated[Path | None, typer.Option(help="Folder for a report with example pictures.")] = None,
+) -> None:
+    """Judge a detector: K-mAP, U-Recall, U-Precision, WI, A-OSE."""
+    from zavis_bt.cli.detector_data import open_images
+    from zavis_bt.cli.detector_eval import judge_detector
+    from zavis_bt.cli.detector_progress import progress_bar
+    from zavis_bt.perception.detector import NeuralDetector
+    from zavis_bt.perception.models import find_weights
+
+    check_device(device)
+    opened = NeuralDetector.load(find_weights(detector), device=device, width=width)
+    dataset = open_images(data)
+    with progress_bar(min(images or len(dataset), len(dataset))) as progress:
+        judge_detector(opened, dataset, images, progress, as_json=as_json, report=report)
+
+
+@app.command()
+def export(
+    training: Annotated[Path, typer.Argument(metavar="TRAINING", help="Folder of a training.")],
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="Weights file to write (.safetensors).")],
+    width: Annotated[int | None, typer.Option(min=32, help="Working width [px].")] = None,
+    known_score: Annotated[float | None, typer.Option(min=0, max=1, help="Least score of known classes.")] = None,
+    unknown_score: Annotated[float | None, typer.Option(min=0, max=1, help="Least score of unknown things.")] = None,
+    cdf: Annotated[float | None, typer.Option(min=0, max=1, help="Uncertainty above which a thing is unknown.")] = None,
+) -> None:
+    """Write a trained detector as one file, with the width and the thresholds that it is used with."""
+    from zavis_bt.perception.detector.building import export_training
+
+    if out.suffix != ".safetensors":
+        raise InputError(f"OUT: {out} (needs to end in .safetensors)")
+    given = {"known_score": known_score, "unknown_score": unknown_score, "cdf": cdf}
+    export_training(training, out, width, {name: value for name, value in given.items() if value is not None})
+    typer.echo(f"written: {out}")
+
+
+def check_device(device: str) -> None:
+    """Refuse devices that are not there.
+
+    Raises:
+        InputError: The device is unknown or missing.
+    """
+    import torch
+
+    if device.partition(":")[0] not in ("cpu", "cuda"):
+        raise InputError(f"--device: '{device}' is unknown (cpu or cuda)")
+    if device != "cpu" and not torch.cuda.is_available():
+        raise InputError(f"--device: '{device}' is not there (choose cpu)")
+
+
+def _config(known: str | None, method: str, backbone: str, width: int | None, *, pretrained: bool) -> DetectorConfig:
+    from zavis_bt.perception.detector import DetectorConfig
+    from zavis_bt.perception.detector.building import DEFAULT_KNOWN
+
+    names = DEFAULT_KNOWN if known is None else tuple(name.strip() for name in known.split(",") if name.strip())
+    working = 320 if backbone == "tiny" else (width or 800)
+    return DetectorConfig(names, method, backbone, width=working, frozen=pretrained)  # type: ignore[arg-type]  # checks
+
+
+def _labelling(method: str, clip: str, device: str) -> Labelling | None:
+    """Return where labels of unknown things come from."""
+    from zavis_bt.perception.detector import ClipLabelling, ProposalLabelling
+
+    if method == "zavis":
+        from zavis_bt.perception.clip import ClipModel, ClipObjectness
+        from zavis_bt.perception.neural import find_clip
+
+        architecture, pretrained, _ = find_clip(clip)
+        return ClipLabelling(ClipObjectness(ClipModel.load(architecture, pretrained, device=device)))
+    return ProposalLabelling() if method == "ore" else None
