@@ -52,7 +52,7 @@ def _opened(settings: EyesSettings) -> Eyes:
     file = find_weights(detector_name)
     architecture, pretrained, weights = find_clip(clip_name)
     checksums = {"detector": checksum(file)} | ({"clip": checksum(weights)} if weights else {})
-    _check_checksums(settings, checksums)
+    check_checksums(settings, checksums)
     settings = with_meaning(settings)
     scales = [NeuralDetector.load(file, device=settings.device, width=width) for width in settings.widths or (None,)]
     detector: Detector = scales[0] if len(scales) == 1 else SeveralScales(scales)
@@ -128,7 +128,16 @@ def checksum(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def _check_checksums(settings: EyesSettings, found: Mapping[str, str]) -> None:
+def check_checksums(settings: EyesSettings, found: Mapping[str, str]) -> None:
+    """Refuse weights that the thresholds were not measured with.
+
+    Args:
+        settings: Whose checksums are compared.
+        found: SHA-256 of the weights at hand, by ``detector`` and ``clip``.
+
+    Raises:
+        InputError: One is another.
+    """
     for kind, expected in settings.checksums:
         if kind in found and found[kind] != expected:
             raise InputError(
