@@ -34,7 +34,7 @@ def bench(
     perception: Annotated[
         str, typer.Option(help="Who sees: simulated, neural, a plug-in, or an eyes file.")
     ] = "simulated",
-    prior: Annotated[str, typer.Option(help="Commonsense: commonsense, word, none, or a plug-in.")] = "commonsense",
+    prior: Annotated[str, typer.Option(help="Commonsense: commonsense, comet, word, none, a plug-in.")] = "commonsense",
     planner: Annotated[str, typer.Option(help="Global planner.")] = "astar",
     max_travel: Annotated[float, typer.Option(min=0.1, help="Give up after this many metres.")] = 50.0,
     limit: Annotated[int | None, typer.Option(min=1, help="Only the first so many episodes.")] = None,

@@ -42,7 +42,7 @@ def run(
         str | None,
         typer.Option(help="Who sees: simulated, neural, a plug-in, or an eyes file; neural on real cameras."),
     ] = None,
-    prior: Annotated[str, typer.Option(help="Commonsense: commonsense, word, none, or a plug-in.")] = "commonsense",
+    prior: Annotated[str, typer.Option(help="Commonsense: commonsense, comet, word, none, a plug-in.")] = "commonsense",
     order: Annotated[str | None, typer.Option(help="Visiting order: greedy, nearest, or a plug-in.")] = None,
     planner: Annotated[
         str, typer.Option(help="Global planner: astar, rrt, rrt_connect, rrt_star, bit_star.")
