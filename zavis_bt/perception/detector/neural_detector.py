@@ -98,7 +98,7 @@ def _fitted(rgb: NDArray[np.uint8], width: int) -> tuple[NDArray[np.uint8], tupl
     if min(w, h) < _LEAST_SIDE:
         border = (0, max(_LEAST_SIDE - h, 0), 0, max(_LEAST_SIDE - w, 0))
         small = np.asarray(cv2.copyMakeBorder(small, *border, cv2.BORDER_CONSTANT, value=(114, 114, 114)))
-    return np.ascontiguousarray(small, dtype=np.uint8), (full / w, height / h)
+    return np.array(small, dtype=np.uint8, order="C"), (full / w, height / h)  # frames are read-only, tensors never
 
 
 def _summing_to_one(shares: list[float]) -> list[float]:
