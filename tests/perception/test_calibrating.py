@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -14,7 +16,6 @@ from zavis_bt.types import UNKNOWN_CLASS, Box, Detection, FloatArray, RgbdFrame
 BOX = Box(10, 10, 50, 50)
 TEXTS = ["mug", "desk", "bed", "sofa"]
 LANDMARKS = ("desk", "bed")
-ALL = np.ones((1, 4), dtype=np.bool_)
 
 
 class OnePicture:
@@ -74,11 +75,13 @@ def test_texts_are_matched_with_the_boxes_that_a_mission_would_match() -> None:
         Detection(BOX, "sofa", 0.9), Detection(Box(60, 0, 80, 20), UNKNOWN_CLASS, 0.5), Detection(BOX, "sofa", 0.1)
     )
     eyes = Eyes(found, Scores(1, 2, 3, 4), Thresholds(detection=0.2))
-    (look,) = look_at(eyes, images, [0], TEXTS)
-    assert look.shows == ("sofa", "mug")
-    assert look.scores.tolist() == [[1, 2, 3, 4]] * 2
-    assert look.matched.tolist() == [[False, False, False, True], [True] * 4]
-    assert look.present == {"sofa", "mug"}
+    (seen,) = look_at(eyes, images, [0], TEXTS)
+    assert seen.shows == ("sofa", "mug")
+    assert seen.scores.tolist() == [[1, 2, 3, 4]] * 2
+    assert seen.matched.tolist() == [[False, False, False, True], [True] * 4]
+    assert seen.labels == ("sofa", UNKNOWN_CLASS)
+    assert seen.confidence.tolist() == [0.9, 0.5]
+    assert seen.present == {"sofa", "mug"}
 
 
 def looks(count: int, *rows: tuple[str | None, list[float]], spread: float = 0.0) -> list[Look]:
@@ -86,8 +89,13 @@ def looks(count: int, *rows: tuple[str | None, list[float]], spread: float = 0.0
     shows = tuple(show for show, _ in rows)
     scores = np.array([row for _, row in rows])
     present = frozenset(show for show in shows if show)
-    every = np.ones(scores.shape, dtype=np.bool_)
-    return [Look(shows, scores + spread * rng.standard_normal(scores.shape), every, present) for _ in range(count)]
+    noisy = (scores + spread * rng.standard_normal(scores.shape) for _ in range(count))
+    return [look(shows, each, present) for each in noisy]
+
+
+def look(shows: tuple[str | None, ...], scores: FloatArray, present: frozenset[str] = frozenset()) -> Look:
+    every, labels = np.ones(scores.shape, dtype=np.bool_), (UNKNOWN_CLASS,) * len(shows)
+    return Look(shows, scores, every, labels, np.full(len(shows), 0.5), present)
 
 
 def test_match_threshold_is_the_quantile_of_what_is_not_there() -> None:
@@ -113,14 +121,14 @@ def test_temperature_is_the_one_that_scores_were_drawn_with() -> None:
     odds = np.exp(scores / 2.5)
     first = rng.random(4000) < odds[:, 0] / odds.sum(axis=1)
     drawn = [
-        Look(("desk" if one else "bed",), np.array([[5.0, *row, 5.0]]), ALL, frozenset({"desk", "bed"}))
+        look(("desk" if one else "bed",), np.array([[5.0, *row, 5.0]]), frozenset({"desk", "bed"}))
         for one, row in zip(first.tolist(), scores.tolist(), strict=True)
     ]
     assert calibrate(drawn, TEXTS, LANDMARKS).thresholds.temperature == pytest.approx(2.5, rel=0.1)
 
 
 def test_images_without_boxes_count_as_quiet() -> None:
-    empty = [Look((), np.empty((0, 4)), ALL[:0], frozenset())] * 9900
+    empty = [look((), np.empty((0, 4)))] * 9900
     found = calibrate([*looks(100, ("desk", [10, 28, 14, 5]), spread=1.0), *empty], TEXTS, LANDMARKS)
     assert found.thresholds.match == pytest.approx(found.right.min(), abs=0.005)
 
@@ -148,7 +156,7 @@ def test_relative_scores_forgive_a_crop_that_likes_every_text() -> None:
     seen = []
     for liking in rng.normal(0, 20, 300).tolist():
         scores = np.array([[30.0, 10, 10, 10], [10, 28, 14, 5]]) + liking
-        seen.append(Look(("mug", "desk"), scores, np.tile(ALL, (2, 1)), frozenset({"mug", "desk"})))
+        seen.append(look(("mug", "desk"), scores, frozenset({"mug", "desk"})))
     plain = calibrate(seen, TEXTS, LANDMARKS, relative=False)
     relative = calibrate(seen, TEXTS, LANDMARKS)
     assert plain.recall < 0.5
@@ -162,3 +170,11 @@ def test_plain_scores_are_kept_where_relative_ones_help_little() -> None:
     seen = looks(100, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
     assert calibrate(seen, TEXTS, LANDMARKS).contrast is None
     assert calibrate(seen, TEXTS, LANDMARKS, relative=True).contrast is not None
+
+
+def test_known_landmarks_need_the_confidence_that_sets_right_ones_apart() -> None:
+    seen = looks(40, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]))
+    for confidence, shown in ((0.9, "sofa"), (0.8, "sofa"), (0.3, "bed"), (0.2, None)):
+        known = replace(looks(1, (shown, [9, 9, 9, 9]))[0], labels=("sofa",), confidence=np.array([confidence]))
+        seen += [known] * 20
+    assert calibrate(seen, TEXTS, LANDMARKS).thresholds.known == pytest.approx(0.8)

@@ -267,3 +267,15 @@ def test_default_landmarks_hold_the_papers() -> None:
     assert set(DEFAULT_KNOWN_LANDMARKS) == {"tv monitor", "sofa", "dining table"}
     assert {"armchair", "side table", "coffee table", "desk", "bed", "drawer"} <= set(DEFAULT_UNKNOWN_LANDMARKS)
     assert not set(DEFAULT_KNOWN_LANDMARKS) & set(DEFAULT_UNKNOWN_LANDMARKS)
+
+
+def test_known_class_needs_confidence_to_be_a_landmark() -> None:
+    assert len(perceive(ScriptedMatcher(), sofa(score=0.4), known=0.4).sightings) == 1
+    assert not perceive(ScriptedMatcher(), sofa(score=0.39), known=0.4).sightings
+
+
+def test_faint_boxes_are_not_looked_at() -> None:
+    matcher = ScriptedMatcher(default=30.0)
+    assert not perceive(matcher, unknown(MUG_BOX, 0.2), detection=0.3).candidates
+    assert not matcher.calls
+    assert perceive(matcher, unknown(MUG_BOX, 0.3), detection=0.3).candidates

@@ -133,6 +133,7 @@ def report(found: Calibration, false_alarms: float, console: Console) -> None:
     table.add_row("match (m_t)", f"{limits.match:.2f}", what)
     what = f"{found.landmark_recall:.0%} of the landmarks' boxes pass, {found.landmark_false:.0%} of the others"
     table.add_row("landmark", f"{limits.landmark:.2f}", what)
+    table.add_row("known", f"{limits.known:.3f}", "confidence of known landmarks")
     table.add_row("temperature (T_o)", f"{limits.temperature:.3f}", f"{found.landmark_accuracy:.0%} best names right")
     if found.contrast is not None:
         others = f"scores are relative to those of {len(found.contrast.texts)} texts"

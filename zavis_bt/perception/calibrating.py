@@ -7,6 +7,7 @@ Eyes look at labelled images as they would in a mission.
   greatest sum of both shares told rightly (Youden's index).
 - Scores may be relative to those of other texts (`Contrast`), which helps some models much and others not at all. The
   texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
+- The least confidence of a known landmark sets boxes that show their class apart from those that do not, likewise.
 - T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.
 """
 
@@ -26,7 +27,7 @@ from zavis_bt.perception.datasets import DetectionDataset
 from zavis_bt.perception.eyes import Eyes
 from zavis_bt.perception.looking import Look, look_at
 from zavis_bt.perception.naming import key
-from zavis_bt.types import FloatArray
+from zavis_bt.types import UNKNOWN_CLASS, FloatArray
 
 _MUCH = 0.05  # share of right pairs
 _LEAST_PAIRS = 30  # from which a threshold means something
@@ -100,8 +101,9 @@ def calibrate(
     best, told = rows.max(axis=1), rows[is_landmark]
     landmark = _dividing(best, is_landmark)
     temperature = _temperature(told, truth[is_landmark])
+    known = max(_sure_of_known(looks), detection)
     return Calibration(
-        Thresholds(round(match, 2), round(landmark, 2), round(temperature, 3), detection),
+        Thresholds(round(match, 2), round(landmark, 2), round(temperature, 3), detection, round(known, 3)),
         contrast,
         right,
         wrong,
@@ -153,6 +155,20 @@ def _landmark_rows(looks: Sequence[Look], columns: list[int], names: list[str]) 
                 rows.append(look.scores[k, columns][None])
                 truth.append(names.index(shown) if shown in names else -1)
     return np.concatenate(rows), np.array(truth, dtype=np.intp)
+
+
+def _sure_of_known(looks: Sequence[Look]) -> float:
+    """Return the confidence that sets right boxes of known classes apart; 0 if the images hardly show any."""
+    pairs = [
+        (confidence, key(label) == key(shown or ""))
+        for look in looks
+        for confidence, label, shown in zip(look.confidence.tolist(), look.labels, look.shows, strict=True)
+        if label != UNKNOWN_CLASS
+    ]
+    right = np.array([is_right for _, is_right in pairs], dtype=np.bool_)
+    if right.sum() < _LEAST_PAIRS or right.all():
+        return 0.0
+    return _dividing(np.array([confidence for confidence, _ in pairs]), right)
 
 
 def _dividing(scores: FloatArray, positive: NDArray[np.bool_]) -> float:

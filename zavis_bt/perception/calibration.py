@@ -20,6 +20,8 @@ class Thresholds:
     """T_o of the softmax over landmark names, above 0, 100 × cosine."""
     detection: float = 0.0
     """Confidence below which the detector's boxes are not looked at, 0 to 1."""
+    known: float = 0.0
+    """Confidence below which a box of a known class is no landmark, 0 to 1."""
 
     def __post_init__(self) -> None:
         """Check the ranges.
@@ -32,5 +34,6 @@ class Thresholds:
                 raise InputError(f"thresholds: {field.name} is {getattr(self, field.name)} (a finite number)")
         if self.temperature <= 0:
             raise InputError(f"thresholds: temperature is {self.temperature} (above 0)")
-        if not 0.0 <= self.detection < 1.0:
-            raise InputError(f"thresholds: detection is {self.detection} (0 or more, below 1)")
+        for name, share in (("detection", self.detection), ("known", self.known)):
+            if not 0.0 <= share < 1.0:
+                raise InputError(f"thresholds: {name} is {share} (0 or more, below 1)")

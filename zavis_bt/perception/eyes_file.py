@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -33,6 +34,7 @@ class _Thresholds(_Entry):
     landmark: Number
     temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     detection: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    known: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
 class _Contrast(_Entry):
@@ -109,8 +111,7 @@ def write_eyes(path: Path, settings: EyesSettings, calibrated: Mapping[str, Any]
     if settings.widths:
         entries["widths"] = _flow_list(settings.widths)
     if settings.thresholds is not None:
-        names = "match", "landmark", "temperature", "detection"
-        entries["thresholds"] = {name: getattr(settings.thresholds, name) for name in names}
+        entries["thresholds"] = asdict(settings.thresholds)
     if settings.contrast is not None:
         entries["contrast"] = {
             "temperature": settings.contrast.temperature,

@@ -31,6 +31,10 @@ class Look:
     """(n, m) of n boxes with m texts."""
     matched: NDArray[np.bool_]
     """(n, m) whether the two would be matched in a mission."""
+    labels: tuple[str, ...]
+    """(n,) the detector's."""
+    confidence: FloatArray
+    """(n,) the detector's, 0 to 1."""
     present: frozenset[str]
     """Categories that are annotated, be it as ignored."""
 
@@ -50,18 +54,19 @@ def look_at(eyes: Eyes, images: DetectionDataset, indices: Sequence[int], texts:
     for index in indices:
         annotations = images.annotations(index)
         frame = frame_of(images.image(index), stamp=float(index))
-        boxes, labels, shows = [], [], []
+        boxes, labels, confidence, shows = [], [], [], []
         for found in eyes.detector.detect(frame):
             shown, sure = what_it_shows(found.box, annotations)
             if sure and found.score >= eyes.thresholds.detection:
                 boxes.append(found.box)
                 labels.append(found.label)
+                confidence.append(found.score)
                 shows.append(shown)
         matched = np.array([[_is_matched(label, text) for text in texts] for label in labels], dtype=np.bool_)
         shape = len(boxes), len(texts)
         scores = np.asarray(eyes.matcher.match(frame, boxes, texts), dtype=np.float64) if boxes else np.empty(shape)
         present = frozenset(annotation.category for annotation in annotations)
-        yield Look(tuple(shows), scores, matched.reshape(shape), present)
+        yield Look(tuple(shows), scores, matched.reshape(shape), tuple(labels), np.array(confidence), present)
 
 
 def frame_of(rgb: NDArray[np.uint8], stamp: float = 0.0) -> RgbdFrame:

@@ -34,8 +34,8 @@ Distribution = tuple[tuple[str, float], ...]
 class Perceiver:
     """The paper's detection module: open-set detection, text-image matching, projection to the map.
 
-    - A box of a known landmark class is a sighting with the detector's class probabilities, restricted to the known
-      landmarks.
+    - A box of a known landmark class, if the detector is sure enough of it, is a sighting with the detector's class
+      probabilities, restricted to the known landmarks.
     - An ``unknown`` box is matched with the names of the unknown landmarks and with the target, in one call of the
       matcher a frame. If its score for the target is at least m_t, it is a candidate. If not, and its best landmark's
       score is at least the landmarks' threshold and it is as large as furniture, it is a sighting with
@@ -99,7 +99,8 @@ class Perceiver:
         boxes = [
             (detection, box) for detection in self._detect(frame) if (box := clip(detection.box, frame.intrinsics))
         ]
-        known = [(detection, box) for detection, box in boxes if key(detection.label) in self._known]
+        sure = [(detection, box) for detection, box in boxes if detection.score >= self._thresholds.known]
+        known = [(detection, box) for detection, box in sure if key(detection.label) in self._known]
         unknown = [(detection, box) for detection, box in boxes if detection.label == UNKNOWN_CLASS]
         named = [(d, box) for d, box in boxes if d.label != UNKNOWN_CLASS and may_name(target, d.label)]
         matched = [box for _, box in (*unknown, *named)]
