@@ -15,15 +15,15 @@ _SIDES = (8, 12, 16, 24, 32, 44)  # to which blurred crops are shrunk in between
 class Augmentation:
     """How far variants go."""
 
-    shift: float = 0.10
+    shift: float = 0.07
     """Standard deviation of each edge of the box, as a share of its side."""
     brightness: float = 0.15
     contrast: float = 0.15
     tint: float = 0.04
     """Standard deviation of each channel's factor; colours must stay what they are called."""
-    coarse: float = 0.4
+    coarse: float = 0.3
     """Share of crops shown as the camera would have seen them with fewer pixels."""
-    least_share: float = 0.25
+    least_share: float = 0.3
     """Of pixels along a side that coarse crops keep: 0.25 shows 640 px wide frames as of a camera of 160 px."""
 
 
@@ -36,18 +36,17 @@ def boxes_near(boxes: Tensor, limits: Tensor, augmentation: Augmentation, rng: t
     return torch.where(narrow, boxes, moved)
 
 
-def cut_squares(patches: Tensor, boxes: Tensor, mirrored: Tensor, size: int, padding: Tensor) -> Tensor:
-    """Return what boxes in patches show, as wholes on squares.
+def cut_squares(patches: Tensor, boxes: Tensor, mirrored: Tensor, size: int) -> tuple[Tensor, Tensor]:
+    """Return what boxes in patches show, as wholes on squares, and where on the squares the boxes are.
 
     Args:
         patches: (n, 3, s, s), 0 to 255.
         boxes: (n, 4) as shares of the patch.
         mirrored: (n,) whether left and right are swapped.
         size: Side of the squares [px].
-        padding: (3,) colour beside long boxes.
 
     Returns:
-        (n, 3, size, size) float32, 0 to 255.
+        (n, 3, size, size) float32, 0 to 255; and (n, 1, size, size) bool, false beside long boxes.
     """
     middle, sides = (boxes[:, 2:] + boxes[:, :2]) / 2, boxes[:, 2:] - boxes[:, :2]
     half = sides.amax(dim=1, keepdim=True) / 2
@@ -59,8 +58,7 @@ def cut_squares(patches: Tensor, boxes: Tensor, mirrored: Tensor, size: int, pad
     squares = F.grid_sample(patches, grid, mode="bilinear", padding_mode="border", align_corners=False)
     inside_x = (x - middle[:, :1]).abs() <= sides[:, :1] / 2
     inside_y = (y - middle[:, 1:]).abs() <= sides[:, 1:] / 2
-    inside = inside_y[:, None, :, None] & inside_x[:, None, None, :]
-    return torch.where(inside, squares, padding[None, :, None, None])
+    return squares, inside_y[:, None, :, None] & inside_x[:, None, None, :]
 
 
 def vary_light(images: Tensor, augmentation: Augmentation, rng: torch.Generator) -> Tensor:

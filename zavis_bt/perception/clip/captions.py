@@ -62,6 +62,11 @@ class CaptionWriter:
         self.truth: NDArray[np.bool_] = np.array(self._rows)
         self._untrue = np.flatnonzero(~self.truth.any(axis=1))
 
+    def words(self) -> list[str]:
+        """Return texts that hold every word a caption may have."""
+        colours = [name for names in self._colours for name in names]
+        return [*self._texts, *colours, *(text.format("") for text in (*_TEMPLATES, *_COLOUR_ONLY))]
+
     def write(self, categories: NDArray[np.intp], colours: NDArray[np.intp], rng: np.random.Generator) -> Captions:
         """Return a caption for each crop.
 
@@ -118,6 +123,6 @@ class CaptionWriter:
 
     def _text(self, noun: int, colour: int, alone: bool, rng: np.random.Generator) -> str:
         words = [] if colour == NO_COLOUR else self._colours[colour]
-        word = words[0 if rng.random() < 0.8 else rng.integers(len(words))] if words else ""
+        word = words[0 if rng.random() < 0.8 else int(rng.integers(len(words)))] if words else ""
         said = _COLOUR_ONLY[rng.integers(len(_COLOUR_ONLY))].format(word) if alone else self._texts[noun]
         return _TEMPLATES[rng.integers(len(_TEMPLATES))].format(said if alone or not word else f"{word} {said}")

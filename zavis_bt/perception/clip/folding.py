@@ -19,7 +19,7 @@ def fold_batch_norms(network: nn.Module) -> None:
     for name, module in network.named_modules():
         children = dict(module.named_children())
         for convolution, norm in _pairs(name, children):
-            fused = fuse_conv_bn_eval(children[convolution].eval(), children[norm].eval())  # type: ignore[type-var]
+            fused = fuse_conv_bn_eval(children[convolution].eval(), children[norm].eval())
             setattr(module, convolution, fused)
             setattr(module, norm, nn.Identity())
 

@@ -64,14 +64,14 @@ def encode_gallery(
         full = dataset.size(index)
         things = dataset.annotations(index)
         boxes = np.array([thing.box for thing in things], dtype=np.float64).reshape(-1, 4)
-        counts = [thing for thing in things if not thing.ignored and _side(thing.box, full) >= LEAST_SIDE]
+        counts = [thing for thing in things if not thing.ignored and shorter_side(thing.box, full) >= LEAST_SIDE]
         empty = [box for box, _ in draw_backgrounds(boxes, full, backgrounds, rng)]
         crops = np.array([*(thing.box for thing in counts), *empty], dtype=np.float64).reshape(-1, 4)
         if len(crops):
             rgb = dataset.image(index, width=width)
             vectors.append(model.encode_images(cut_out(rgb, crops * (rgb.shape[1] / full[0]))))
-        rows += [(thing.category, thing.colour or "", _side(thing.box, full), thing.visible) for thing in counts]
-        rows += [("", "", _side(box, full), 1.0) for box in empty]
+        rows += [(thing.category, thing.colour or "", shorter_side(thing.box, full), thing.visible) for thing in counts]
+        rows += [("", "", shorter_side(box, full), 1.0) for box in empty]
         if report:
             report(index + 1, len(dataset))
     if not any(row[0] for row in rows):
@@ -85,5 +85,6 @@ def is_held_out(colour: str, category: str) -> bool:
     return zlib.crc32(f"{colour} {category}".encode()) % 10 == 0
 
 
-def _side(box: NDArray[np.float64] | tuple[float, ...], size: tuple[int, int]) -> float:
+def shorter_side(box: NDArray[np.float64] | tuple[float, ...], size: tuple[int, int]) -> float:
+    """Return the shorter side of a box in an image of that width and height [px at 640 px width]."""
     return float(min(box[2] - box[0], box[3] - box[1])) * 640 / size[0]

@@ -9,9 +9,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import open_clip
-from open_clip.factory import get_model_config
+from open_clip.factory import get_model_config, load_checkpoint
 from torch import Tensor, nn
 
 from zavis_bt.errors import InputError, did_you_mean
@@ -46,7 +47,7 @@ def load_parts(model: str, pretrained: str | None) -> Parts:
     Raises:
         InputError: There is no such model, or its weights cannot be had or do not fit.
     """
-    folder = SHIPPED.get(model) or (Path(model) if _is_path(model) else None)
+    folder = folder_of(model)
     if folder is not None:
         _check_folder(folder, pretrained)
         return _build(f"local-dir:{folder}", None, where=str(folder), required=True)
@@ -60,26 +61,47 @@ def load_parts(model: str, pretrained: str | None) -> Parts:
     return _build(model, pretrained, where=f"CLIP model {model}, weights '{pretrained}'", required=True)
 
 
-def build_untrained(model: str) -> Parts:
-    """Return a model with random weights, to be trained.
+def build_untrained(model: str, weights: Path | None = None) -> Parts:
+    """Return a model to be trained, with random weights or those of a file.
 
     Args:
-        model: Name of one of open_clip's models, or a folder with `CONFIG`.
+        model: Name of a shipped model or of one of open_clip's, or a folder with `CONFIG`.
+        weights: File to begin with.
 
     Raises:
-        InputError: There is no such model.
+        InputError: There is no such model, or the weights do not fit.
     """
-    folder = SHIPPED.get(model) or (Path(model) if _is_path(model) else None)
+    folder = folder_of(model)
     if folder is None:
         _check_name(model)
-        return _build(model, None, where=f"CLIP model {model}", required=False)
-    _check_folder(folder, None)
-    return _build(f"local-dir:{folder}", None, where=str(folder), required=False)
+    else:
+        _check_folder(folder, None)
+    where = f"CLIP model {model}"
+    parts = _build(model if folder is None else f"local-dir:{folder}", None, where=where, required=False)
+    if weights is not None:
+        if not weights.is_file():
+            raise InputError(f"{weights}: there is no such file (weights of {model})")
+        try:
+            load_checkpoint(parts.network, str(weights))
+        except Exception as error:  # whatever open_clip, torch and safetensors raise for bad files
+            raise InputError(f"{weights}: cannot be loaded: {_first_line(error)}") from error
+    return parts
+
+
+def model_config(model: str) -> dict[str, Any]:
+    """Return the architecture of a model in open_clip's form; ``model`` as for `build_untrained`."""
+    folder = folder_of(model)
+    return dict(get_model_config(model if folder is None else f"local-dir:{folder}"))
 
 
 def logit_scale(network: nn.Module) -> float:
     """Return the factor of cosines with which a model was trained; 100 for CLIP."""
     return math.exp(float(network.get_parameter("logit_scale").detach()))
+
+
+def folder_of(model: str) -> Path | None:
+    """Return the folder of a shipped model or of the user's; None for open_clip's names."""
+    return SHIPPED.get(model) or (Path(model) if _is_path(model) else None)
 
 
 def _is_path(model: str) -> bool:
@@ -150,7 +172,10 @@ def _quiet() -> Iterator[None]:
         logger.setLevel(before)
 
 
-def read_facts(folder: Path) -> dict[str, object]:
-    """Return what a folder's configuration says of the model's training; empty if nothing."""
+def read_facts(model: str) -> dict[str, Any]:
+    """Return what a model's folder says of its training; empty if nothing, and for open_clip's names."""
+    folder = folder_of(model)
+    if folder is None:
+        return {}
     facts = json.loads((folder / CONFIG).read_text()).get("training", {})
     return dict(facts) if isinstance(facts, dict) else {}

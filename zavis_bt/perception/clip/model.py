@@ -35,7 +35,7 @@ class ClipModel:
         self._network = parts.network.eval()
         fold_batch_norms(self._network.get_submodule("visual"))
         self._device = torch.device(device)
-        self._network.to(self._device).to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # torch's stubs want a tensor beside the format
+        self._network.to(self._device).to(memory_format=torch.channels_last)
         self._vectors: dict[str, Tensor] = {}
 
     @classmethod

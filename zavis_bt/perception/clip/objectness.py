@@ -34,4 +34,5 @@ class ClipObjectness:
         logits = self._model.logit_scale * cosines
         shares = np.exp(logits - logits.max(axis=1, keepdims=True, initial=-np.inf))
         background = shares[:, : len(BACKGROUND_PROMPTS)].sum(axis=1) / shares.sum(axis=1)
-        return (1 - background).astype(np.float32)
+        objectness: NDArray[np.float32] = (1 - background).astype(np.float32)
+        return objectness
