@@ -80,6 +80,32 @@ def train(
     typer.echo(f"written: {out}")
 
 
+@app.command()
+def lit(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The --out folder of a training that has ended.")],
+    words: Annotated[Path | None, typer.Option(help="JSON of synonyms and groups; a home's if not given.")] = None,
+    without_tested: Annotated[bool, typer.Option(help="Leave the synonyms that eval asks for out of it.")] = False,
+    seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
+) -> None:
+    """Let a trained image tower be asked with any English word: the model is then called FOLDER-lit."""
+    from zavis_bt.cli.detector_progress import progress_bar
+    from zavis_bt.perception.clip.loading import load_parts
+    from zavis_bt.perception.clip.patches import read_patches
+    from zavis_bt.perception.clip.vocabulary import HOUSEHOLD_WORDS, Vocabulary
+    from zavis_bt.perception.clip.word_tower import WORDS
+    from zavis_bt.perception.clip.word_training import fit_word_tower
+
+    steps = 1500
+    vocabulary = Vocabulary.read(words or HOUSEHOLD_WORDS)
+    if without_tested:
+        vocabulary = vocabulary.without(vocabulary.tested_synonyms)
+    parts, patches = load_parts(str(folder), None), read_patches(folder / "patches")
+    with progress_bar(steps, "fitting") as progress:
+        tower = fit_word_tower(parts, patches, vocabulary, steps=steps, seed=seed, progress=progress)
+    tower.save(folder / WORDS)
+    typer.echo(f"written: {folder / WORDS}")
+
+
 @app.command("eval")
 def evaluate(
     model: Annotated[str, typer.Argument(metavar="MODEL", help="A name, or a folder; MODEL@WEIGHTS of open_clip.")],

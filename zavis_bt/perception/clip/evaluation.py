@@ -105,12 +105,14 @@ class MatcherEvaluation:
             zip(gallery.colours[self._known].tolist(), gallery.categories[self._known].tolist(), strict=True)
         )
         asked = [pair for pair, count in sorted(pairs.items()) if count >= _ENOUGH and pair[0]]
+        if not asked:
+            return {}
         scores = self.scores([" ".join(pair) for pair in asked])
         precisions = {
             pair: average_precision(column, (gallery.colours == pair[0]) & (gallery.categories == pair[1]))
             for pair, column in zip(asked, scores.T, strict=True)
         }
-        figures = {"mean AP of colour-noun queries": float(np.mean([*precisions.values()]))} if precisions else {}
+        figures = {"mean AP of colour-noun queries": float(np.mean([*precisions.values()]))}
         wallet = precisions.get(("red", "wallet"))
         return figures | ({} if wallet is None else {"AP of red wallet": wallet})
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pickle
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +32,7 @@ def load_state(folder: Path) -> dict[str, Any]:
         state = torch.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError as error:
         raise InputError(f"{folder}: holds no training (begin one without --resume)") from error
-    except (RuntimeError, OSError, EOFError, pickle.UnpicklingError) as error:
+    except Exception as error:  # whatever unpickling a broken file raises
         first = str(error).partition("\n")[0]
         raise InputError(f"{path}: cannot be read: {first} (train again without --resume)") from error
     if not isinstance(state, dict) or state.get("form") != _FORM:

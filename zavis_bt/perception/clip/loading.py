@@ -17,6 +17,7 @@ from torch import Tensor, nn
 
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.perception.clip.crops import Preprocessing
+from zavis_bt.perception.clip.word_tower import WORDS, WordTower
 
 CONFIG = "open_clip_config.json"
 """The file that makes a folder a model, beside its weights."""
@@ -24,6 +25,9 @@ WEIGHTS = "open_clip_model.safetensors"
 """The weights in folders that are written here; others are read, too."""
 SHIPPED = {"zavis-tiny": Path(__file__).parents[1] / "weights" / "zavis_tiny_clip"}
 """Models that come with the package."""
+
+LIT = "-lit"
+"""Ends the names of models that read texts by static word vectors: ``zavis-tiny-lit``, ``FOLDER-lit``."""
 
 Tokenizer = Callable[[list[str]], Tensor]
 
@@ -47,6 +51,8 @@ def load_parts(model: str, pretrained: str | None) -> Parts:
     Raises:
         InputError: There is no such model, or its weights cannot be had or do not fit.
     """
+    if model.endswith(LIT):
+        return _with_word_tower(model.removesuffix(LIT), pretrained)
     folder = folder_of(model)
     if folder is not None:
         _check_folder(folder, pretrained)
@@ -92,6 +98,18 @@ def model_config(model: str) -> dict[str, Any]:
     """Return the architecture of a model in open_clip's form; ``model`` as for `build_untrained`."""
     folder = folder_of(model)
     return dict(get_model_config(model if folder is None else f"local-dir:{folder}"))
+
+
+def _with_word_tower(model: str, pretrained: str | None) -> Parts:
+    folder = folder_of(model)
+    if folder is None or not (folder / WORDS).is_file():
+        raise InputError(f"{model}{LIT}: has no word tower (train one: zavis matcher lit FOLDER)")
+    parts = load_parts(model, pretrained)
+    try:
+        tower = WordTower.load(parts.network, folder / WORDS)
+    except Exception as error:  # whatever safetensors and torch raise for bad files
+        raise InputError(f"{folder / WORDS}: cannot be loaded: {_first_line(error)}") from error
+    return Parts(tower.eval(), tower.tokenise, parts.preprocessing)
 
 
 def logit_scale(network: nn.Module) -> float:
@@ -174,7 +192,7 @@ def _quiet() -> Iterator[None]:
 
 def read_facts(model: str) -> dict[str, Any]:
     """Return what a model's folder says of its training; empty if nothing, and for open_clip's names."""
-    folder = folder_of(model)
+    folder = folder_of(model.removesuffix(LIT))
     if folder is None:
         return {}
     facts = json.loads((folder / CONFIG).read_text()).get("training", {})

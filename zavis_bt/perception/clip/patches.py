@@ -107,6 +107,18 @@ def collect_patches(
     return patches
 
 
+def read_patches(folder: Path) -> Patches:
+    """Return patches that were cut out before.
+
+    Raises:
+        InputError: There are none.
+    """
+    patches = _read(folder, None)
+    if patches is None:
+        raise InputError(f"{folder}: holds no crops (name the --out folder of zavis matcher train)")
+    return patches
+
+
 def cut_patch(
     rgb: NDArray[np.uint8], box: NDArray[np.float64], side: int
 ) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.float64]]:
@@ -161,11 +173,11 @@ def _write(folder: Path, key: str, dataset: DetectionDataset, rows: list[_Row], 
     )
 
 
-def _read(folder: Path, key: str) -> Patches | None:
+def _read(folder: Path, key: str | None) -> Patches | None:
     if not (folder / _TABLE).is_file() or not (folder / _PIXELS).is_file():
         return None
     with np.load(folder / _TABLE) as table:
-        if str(table["key"]) != key:
+        if key is not None and str(table["key"]) != key:
             return None
         return Patches(
             np.load(folder / _PIXELS, mmap_mode="r"),

@@ -1,0 +1,59 @@
+"""`zavis matcher`, from data to a judged model."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+pytest.importorskip("torch")
+
+from sim.labelled_frames import FrameRecipe, write_frames
+from zavis_bt.cli.matcher import app
+from zavis_bt.errors import InputError
+from zavis_bt.perception.clip.loading import CONFIG
+
+
+def matcher(*arguments: str) -> Result:
+    return CliRunner().invoke(app, list(arguments))
+
+
+def test_train_and_judge(tmp_path: Path) -> None:
+    data, out = str(tmp_path / "data"), str(tmp_path / "model")
+    list(write_frames(tmp_path / "data", 4, FrameRecipe(seed=5, width=160, least_side=4.0)))
+    short = ("--steps", "2", "--batch", "4")
+    result = matcher("train", data, "--out", out, *short)
+    assert result.exit_code == 0, result.exception
+    facts = json.loads((tmp_path / "model" / CONFIG).read_text())["training"]
+    assert facts["trained_on"] == "rendered pixels"
+    assert facts["steps"] == 2
+    again = matcher("train", data, "--out", out, *short)
+    assert isinstance(again.exception, InputError)
+    assert "holds a training (go on with --resume" in str(again.exception)
+    longer = matcher("train", data, "--out", out, "--steps", "3", "--batch", "4", "--resume")
+    assert longer.exit_code == 0, longer.exception
+    judged = matcher("eval", out, data, "--json")
+    assert judged.exit_code == 0, judged.exception
+    content = json.loads(judged.output)
+    assert content["trained_on"] == "rendered pixels"
+    assert 0 <= content["figures"]["category"] <= 1
+    printed = matcher("eval", "zavis-tiny", data)
+    assert "(trained on: rendered pixels)" in printed.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("train", "nowhere", "--out", "x"), "there is no such data set"),
+        (("train", "sim:none", "--out", "x"), "is no number of drawn images"),
+        (("train", "sim:4", "--out", "x", "--device", "tpu"), "'tpu' is unknown"),
+        (("train", "sim:4", "--out", "x", "--resume"), "holds no training"),
+        (("eval", "nonsense", "sim:4"), "is unknown"),
+        (("eval", "ViT-B-32@nowhere.pt", "sim:4"), "neither a file nor a published tag"),
+    ],
+)
+def test_faults_are_told_in_one_line(arguments: tuple[str, ...], told: str) -> None:
+    error = matcher(*arguments).exception
+    assert isinstance(error, InputError)
+    assert told in str(error)
+    assert "\n" not in str(error)

@@ -1,0 +1,194 @@
+"""Training a matcher: its parts by hand, and that it learns."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("torch")
+
+import torch
+import torch.nn.functional as F
+
+from sim.labelled_frames import FrameRecipe, write_frames
+from zavis_bt.errors import InputError
+from zavis_bt.perception.clip import ClipModel
+from zavis_bt.perception.clip.augment import Augmentation, boxes_near, coarsen, cut_squares
+from zavis_bt.perception.clip.backgrounds import draw_backgrounds
+from zavis_bt.perception.clip.captions import EMPTY, NO_COLOUR, CaptionWriter
+from zavis_bt.perception.clip.half_size import can_halve, reading_half_size
+from zavis_bt.perception.clip.keeping import load_state, save_state
+from zavis_bt.perception.clip.loading import build_untrained
+from zavis_bt.perception.clip.loss import contrastive_loss
+from zavis_bt.perception.clip.patches import Patches, collect_patches, cut_patch
+from zavis_bt.perception.clip.settings import MatcherSettings
+from zavis_bt.perception.clip.training import MatcherTraining
+from zavis_bt.perception.clip.vocabulary import Vocabulary
+from zavis_bt.perception.datasets import open_dataset
+
+WORDS = Vocabulary(kinds={"furniture": ("sofa",), "transport": ()}, synonyms={"sofa": ("couch",)})
+
+
+class Figures:
+    def __init__(self) -> None:
+        self.losses: list[float] = []
+
+    def write(self, iteration: int, losses: dict[str, float], rate: float) -> None:
+        self.losses.append(losses["contrast"] + losses["naming"])
+
+
+@pytest.fixture(scope="module")
+def patches(tmp_path_factory: pytest.TempPathFactory) -> Patches:
+    torch.set_num_threads(1)
+    folder = tmp_path_factory.mktemp("matcher")
+    recipe = FrameRecipe(seed=91, width=160, categories=("sofa", "fridge", "plant"), least_side=6.0)
+    list(write_frames(folder / "data", 12, recipe))
+    return collect_patches(open_dataset(folder / "data"), folder / "patches", 64)
+
+
+def training(patches: Patches, **changes: object) -> MatcherTraining:
+    settings = {"steps": 14, "batch": 12, "more_captions": 4, "learning_rate": 3e-3, **changes}
+    return MatcherTraining(build_untrained("zavis-tiny"), patches, WORDS, MatcherSettings(**settings))  # type: ignore[arg-type]  # mixed
+
+
+def test_loss_of_one_pair_each_is_infonce() -> None:
+    images, texts = F.normalize(torch.randn(4, 8), dim=1), F.normalize(torch.randn(4, 8), dim=1)
+    logits = 10 * images @ texts.T
+    labels = torch.arange(4)
+    expected = (F.cross_entropy(logits, labels) + F.cross_entropy(logits.T, labels)) / 2
+    loss = contrastive_loss(images, texts, torch.eye(4, dtype=torch.bool), torch.tensor(10.0))
+    torch.testing.assert_close(loss, expected)
+
+
+def test_true_captions_of_others_are_no_mistakes() -> None:
+    images = F.normalize(torch.tensor([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), dim=1)
+    true = torch.tensor([[True, True, False], [True, True, False], [False, False, True]])
+    alike = contrastive_loss(images, images, true, torch.tensor(50.0))
+    assert alike < 1e-6  # told apart from what is wrong
+    assert contrastive_loss(images, images, torch.eye(3, dtype=torch.bool), torch.tensor(50.0)) > 0.3
+
+
+def test_captions_are_true_of_their_own_crops() -> None:
+    writer = CaptionWriter(["sofa", "plant"], ["red", "blue"], WORDS)
+    categories, colours = np.array([0, 0, 1, 2, 3]), np.array([0, 1, NO_COLOUR, NO_COLOUR, NO_COLOUR])
+    for seed in range(20):
+        captions = writer.write(categories, colours, np.random.default_rng(seed))
+        true = writer.true_of(categories, colours, captions)
+        assert true[np.arange(5), np.arange(5)].all()
+        assert not true[:, 5:].any()  # words without examples are true of nothing
+        assert all("transport" in text for text in captions.texts[5:])
+        for j, text in enumerate(captions.texts[:5]):
+            assert not ("red" in text.split() and true[1, j])
+            assert not (("couch" in text or "furniture" in text) and true[2, j])
+
+
+def test_backgrounds_overlap_nothing_much() -> None:
+    things = np.array([[100.0, 100, 300, 300], [400, 200, 500, 450]])
+    drawn = draw_backgrounds(things, (640, 480), 50, np.random.default_rng(0))
+    assert len(drawn) == 50
+    for box, kind in drawn:
+        low, high = np.maximum(box[:2], things[:, :2]), np.minimum(box[2:], things[:, 2:])
+        common = np.clip(high - low, 0, None).prod(axis=1)
+        area = (box[2:] - box[:2]).prod()
+        assert (common / (area + (things[:, 2:] - things[:, :2]).prod(axis=1) - common) < 0.3).all()
+        assert kind != EMPTY or (common < 0.02 * area).all()
+
+
+def test_patches_hold_their_boxes() -> None:
+    rgb = np.zeros((100, 200, 3), dtype=np.uint8)
+    rgb[20:60, 0:30] = (250, 10, 10)
+    patch, box, image = cut_patch(rgb, np.array([0.0, 20.0, 30.0, 60.0]), 80)
+    square, inside = cut_squares(
+        torch.from_numpy(patch).permute(2, 0, 1)[None].float(),
+        torch.tensor(box)[None].float(),
+        torch.tensor([False]),
+        64,
+    )
+    assert image[0] > 0  # the patch reaches beyond the image
+    assert inside.float().mean() == pytest.approx(0.75, abs=0.03)  # 30 by 40
+    assert (square[0, 0][inside[0, 0]] > 200).float().mean() > 0.95
+
+
+def test_boxes_stay_within_their_image() -> None:
+    boxes, limits = (
+        torch.tensor([[0.1, 0.1, 0.9, 0.9]]).repeat(200, 1),
+        torch.tensor([[0.1, 0.0, 0.92, 1.0]]).repeat(200, 1),
+    )
+    near = boxes_near(boxes, limits, Augmentation(), torch.Generator().manual_seed(0))
+    assert (near[:, 0] >= 0.1).all()
+    assert (near[:, 2] <= 0.92).all()
+    assert (near[:, 2:] > near[:, :2]).all()
+    assert near.std(dim=0).min() > 0.005
+
+
+def test_coarse_crops_lose_detail_and_keep_their_mean() -> None:
+    rng = torch.Generator().manual_seed(0)
+    images = 255 * torch.rand(20, 3, 64, 64, generator=rng)
+    coarse = coarsen(images.clone(), torch.full((20,), 20.0), Augmentation(coarse=1.0), rng)
+    assert (coarse.flatten(1).std(dim=1) < 0.7 * images.flatten(1).std(dim=1)).all()
+    torch.testing.assert_close(coarse.mean(dim=(2, 3)), images.mean(dim=(2, 3)), atol=3.0, rtol=0)
+
+
+def test_half_size_reading_leaves_the_network_as_it_was() -> None:
+    network = build_untrained("zavis-tiny").network
+    size = network.visual.image_size
+    if not can_halve(network.visual, size):
+        pytest.skip("the shipped tower reads the smallest squares already")
+    names = {name for name, _ in network.named_parameters()}
+    with reading_half_size(network.visual, size):
+        network.encode_image(torch.rand(2, 3, size // 2, size // 2)).sum().backward()
+    assert {name for name, _ in network.named_parameters()} == names
+    assert network.visual.attnpool.positional_embedding.grad is not None
+
+
+def test_a_few_steps_lower_the_loss_and_write_a_model(patches: Patches) -> None:
+    run, figures = training(patches, half_size=0.0), Figures()
+    run.run(figures, lambda state: None)
+    assert len(figures.losses) == 14
+    assert np.mean(figures.losses[-4:]) < np.mean(figures.losses[:3])
+    assert all(torch.isfinite(value).all() for value in run.averaged_weights().values())
+
+
+def test_training_goes_on_as_if_never_interrupted(patches: Patches, tmp_path: Path) -> None:
+    whole, first = training(patches, steps=4), training(patches, steps=4, save_every=2)
+    whole.run(Figures(), lambda state: None)
+    first.run(Figures(), lambda state: save_state(tmp_path, state) if state["done"] == 2 else None)
+    again = training(patches, steps=4)
+    again.resume(load_state(tmp_path))
+    again.run(Figures(), lambda state: None)
+    for name, value in whole.averaged_weights().items():
+        torch.testing.assert_close(again.averaged_weights()[name], value, msg=name)
+
+
+def test_a_loss_that_is_no_number_ends_with_a_remedy(patches: Patches) -> None:
+    run = training(patches)
+    with torch.no_grad():
+        run.network.get_parameter("logit_scale").fill_(math.nan)
+    with pytest.raises(InputError, match=r"the loss is nan at step 1 \(lower --learning-rate"):
+        run.run(Figures(), lambda state: None)
+
+
+def test_checkpoints_with_faults_are_told(patches: Patches, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="holds no training"):
+        load_state(tmp_path)
+    (tmp_path / "checkpoint.pt").write_bytes(b"junk")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_state(tmp_path)
+    with pytest.raises(InputError, match="of another training"):
+        training(patches).resume({"network": {}, "heads": {}})
+
+
+def test_words_with_faults_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "words.json"
+    with pytest.raises(InputError, match="cannot be read"):
+        Vocabulary.read(path)
+    path.write_text('{"synonym": {}}')
+    with pytest.raises(InputError, match=r"words.json: synonym: Extra inputs"):
+        Vocabulary.read(path)
+
+
+def test_full_size_models_can_be_trained_from_their_name() -> None:
+    assert isinstance(ClipModel, type)
+    with pytest.raises(InputError, match="is unknown"):
+        build_untrained("ViT-B32x")
