@@ -43,12 +43,16 @@ def train(
     device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
     workers: Annotated[int, typer.Option("--workers", "-j", min=0, help="Processes that read images.")] = 0,
     width: Annotated[int | None, typer.Option(min=32, help="Of what is learnt from [px]; by the backbone.")] = None,
+    warm_up: Annotated[
+        int, typer.Option(min=0, help="Iterations in which a tiny backbone first learns to tell cut-out things.")
+    ] = 0,
 ) -> None:
     """Train a detector on labelled images; an interrupted training goes on with --resume."""
     from zavis_bt.cli.detector_data import open_images
     from zavis_bt.cli.detector_progress import progress_bar
     from zavis_bt.perception.detector import Checkpoint, Training, TrainingLog, TrainingSettings, Views, save_detector
     from zavis_bt.perception.detector.building import FACTS, build_network
+    from zavis_bt.perception.detector.warm_up import WarmUp
 
     config = _config(known, method, backbone, width, pretrained=weights is not None)
     check_device(device)
@@ -59,7 +63,9 @@ def train(
     network = build_network(config, seed, weights)
     views = Views() if backbone == "tiny" else Views(width or 800, zoom=1.5, large=0.0)
     peak = rate or (2e-3 if backbone == "tiny" else 1e-4)
-    settings = TrainingSettings(iterations, batch, peak, seed, workers, views=views)
+    settings = TrainingSettings(
+        iterations, batch, peak, seed, workers, views=views, warm_up=WarmUp(warm_up) if warm_up else None
+    )
     training = Training(network, images, settings, _labelling(method, clip, device), device)
     if before is not None:
         training.resume(before)

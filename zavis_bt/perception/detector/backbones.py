@@ -58,7 +58,16 @@ class TinyBody(nn.Module):
         self.stages = nn.ModuleList(
             nn.Sequential(_Block(a, b, 2), _Block(b, b, 1)) for a, b in zip(inputs, stages, strict=True)
         )
-        self.pyramid = FeaturePyramidNetwork(stages, channels, LastLevelMaxPool())
+        self.pyramid = FeaturePyramidNetwork(stages, channels, LastLevelMaxPool(), nn.BatchNorm2d)
+
+        self.features = stages[-1]
+
+    def summary(self, images: Tensor) -> Tensor:
+        """Return the mean of the coarsest map before the pyramid, (n, features)."""
+        x: Tensor = self.stem(images)
+        for stage in self.stages:
+            x = stage(x)
+        return x.mean(dim=(2, 3))
 
     def forward(self, images: Tensor) -> dict[str, Tensor]:
         """Return the pyramid's maps, finest first."""
@@ -73,6 +82,16 @@ def _conv(inputs: int, outputs: int, size: int, stride: int, active: bool = True
     conv = nn.Conv2d(inputs, outputs, size, stride, size // 2, bias=False)
     layers: list[nn.Module] = [conv, nn.BatchNorm2d(outputs)]
     return nn.Sequential(*layers, nn.ReLU(inplace=True)) if active else nn.Sequential(*layers)
+
+
+class _NormalisedHead(nn.Sequential):
+    """Two layers for a box, normalised: from random weights they learn in a fraction of the time."""
+
+    def __init__(self, inputs: int, features: int) -> None:
+        layers: list[nn.Module] = [nn.Flatten()]
+        for size in (inputs, features):
+            layers += [nn.Linear(size, features, bias=False), nn.LayerNorm(features), nn.ReLU(inplace=True)]
+        super().__init__(*layers)
 
 
 class _C4Body(nn.Module):
@@ -106,7 +125,7 @@ def _tiny() -> Parts:
     channels, features, side = 48, 192, 5
     sizes = ((9,), (22,), (50,), (110,), (220,))
     pool = MultiScaleRoIAlign(["0", "1", "2", "3"], side, 1, canonical_scale=80, canonical_level=4)
-    head = TwoMLPHead(channels * side * side, features)
+    head = _NormalisedHead(channels * side * side, features)
     return Parts(TinyBody(channels=channels), channels, AnchorGenerator(sizes, (_RATIOS,) * 5), pool, head, features)
 
 

@@ -28,6 +28,8 @@ class Views:
     """Images are drawn at up to so many times the size at which they fill the view."""
     large: float = 0.2
     """Share of the iterations whose views are twice as wide, of a quarter as many images."""
+    mosaic: float = 0.5
+    """Share of the views that are put together of four windows around known things."""
 
 
 class Batches(torch.utils.data.Dataset[tuple[Tensor, list[Target]]]):
@@ -57,19 +59,70 @@ class Batches(torch.utils.data.Dataset[tuple[Tensor, list[Target]]]):
         return _shuffled(self._seed, epoch, len(self._dataset))[place]
 
     def _view(self, index: int, width: int, rng: np.random.Generator) -> tuple[NDArray[np.uint8], Target]:
-        most = round(self._views.width * self._views.zoom)
-        image = self._dataset.image(index, width=max(most, width))
+        size = (width, round(width * 0.75))
+        if rng.random() < self._views.mosaic:
+            return self._mosaic(index, size, rng)
         full = self._dataset.size(index)
-        height = round(width * 0.75)
-        fit = min(width / full[0], height / full[1])
-        scale = fit * math.exp(rng.uniform(0, math.log(max(most / width, 1.0)))) if rng.random() < 0.7 else fit
-        view, corner = _placed(image, full, scale, (width, height), rng)
-        boxes, labels, ignored = self._things(index, scale, corner, (width, height))
+        fit = min(size[0] / full[0], size[1] / full[1])
+        most = max(self._views.width * self._views.zoom / width, 1.0)
+        scale = fit * math.exp(rng.uniform(0, math.log(most))) if rng.random() < 0.7 else fit
+        room = [max(round(side * scale) - wanted, 0) for side, wanted in zip(full, size, strict=True)]
+        return self._window(
+            index, scale, (int(rng.integers(0, room[0] + 1)), int(rng.integers(0, room[1] + 1))), size, rng
+        )
+
+    def _mosaic(self, index: int, size: tuple[int, int], rng: np.random.Generator) -> tuple[NDArray[np.uint8], Target]:
+        """Return four windows of half the size, each around a known thing of another image."""
+        half = (size[0] // 2, size[1] // 2)
+        view, parts = np.empty((size[1], size[0], 3), dtype=np.uint8), []
+        for number in range(4):
+            image, part = self._around_thing(index, half, rng)
+            x, y = number % 2 * half[0], number // 2 * half[1]
+            view[y : y + half[1], x : x + half[0]] = image
+            part.boxes += torch.tensor([x, y, x, y])
+            part.ignored += torch.tensor([x, y, x, y])
+            parts.append(part)
+            index = self._with_known(rng)
+        columns = (torch.cat([getattr(part, name) for part in parts]) for name in ("boxes", "labels", "ignored"))
+        return view, Target(*columns)
+
+    def _with_known(self, rng: np.random.Generator) -> int:
+        """Return an image that shows a known thing, if a few tries find one."""
+        for _ in range(8):
+            index = int(rng.integers(len(self._dataset)))
+            if any(each.category in self._labels and not each.ignored for each in self._dataset.annotations(index)):
+                break
+        return index
+
+    def _around_thing(
+        self, index: int, size: tuple[int, int], rng: np.random.Generator
+    ) -> tuple[NDArray[np.uint8], Target]:
+        full = self._dataset.size(index)
+        things = [
+            each for each in self._dataset.annotations(index) if each.category in self._labels and not each.ignored
+        ]
+        fit = min(size[0] / full[0], size[1] / full[1])
+        if not things:
+            return self._window(index, fit, (0, 0), size, rng)
+        box = np.array(things[int(rng.integers(len(things)))].box)
+        side = math.exp(rng.uniform(math.log(14), math.log(0.9 * size[1])))
+        scale = float(np.clip(side / max(box[2:] - box[:2]), fit, 1.5 * self._views.width * self._views.zoom / full[0]))
+        low = np.ceil(box[2:] * scale - size).clip(0)
+        high = np.maximum(np.minimum(box[:2] * scale, np.array(full) * scale - size), low)
+        x, y = (int(each) for each in rng.uniform(low, high))
+        return self._window(index, scale, (x, y), size, rng)
+
+    def _window(
+        self, index: int, scale: float, corner: tuple[int, int], size: tuple[int, int], rng: np.random.Generator
+    ) -> tuple[NDArray[np.uint8], Target]:
+        image = self._dataset.image(index, width=round(self._views.width * max(self._views.zoom, 2.0)))
+        view = _cut(image, self._dataset.size(index), scale, corner, size)
+        boxes, labels, ignored = self._things(index, scale, corner, size)
         if rng.random() < 0.5:
             view = view[:, ::-1]
             for each in (boxes, ignored):
-                each[:, [0, 2]] = width - each[:, [2, 0]]
-        return _lit(view, rng), Target(torch.from_numpy(boxes), torch.tensor(labels).long(), torch.from_numpy(ignored))
+                each[:, [0, 2]] = size[0] - each[:, [2, 0]]
+        return lit(view, rng), Target(torch.from_numpy(boxes), torch.tensor(labels).long(), torch.from_numpy(ignored))
 
     def _things(
         self, index: int, scale: float, corner: tuple[int, int], view: tuple[int, int]
@@ -105,26 +158,35 @@ def _shuffled(seed: int, epoch: int, count: int) -> list[int]:
     return _orders[key]
 
 
-def _placed(
-    image: NDArray[np.uint8], full: tuple[int, int], scale: float, view: tuple[int, int], rng: np.random.Generator
-) -> tuple[NDArray[np.uint8], tuple[int, int]]:
-    """Return the image, scaled, behind a window, and the window's corner in the scaled image; grey where nothing is."""
-    width, height = max(round(full[0] * scale), 1), max(round(full[1] * scale), 1)
-    if image.shape[1::-1] != (width, height):
-        shrinks = width < image.shape[1]
-        image = np.asarray(
-            cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
-        )
-    x, y = (int(rng.integers(0, max(size - wanted, 0) + 1)) for size, wanted in zip((width, height), view, strict=True))
-    part = image[y : y + view[1], x : x + view[0]]
+def _cut(
+    image: NDArray[np.uint8], full: tuple[int, int], scale: float, corner: tuple[int, int], view: tuple[int, int]
+) -> NDArray[np.uint8]:
+    """Return a window of an image, scaled; grey where nothing is.
+
+    Args:
+        image: Perhaps scaled down already.
+        full: Width and height of the full image.
+        scale: Of the full image.
+        corner: Of the window, in the scaled image.
+        view: Width and height of the window.
+    """
+    factor = scale * full[0] / image.shape[1]
+    x0, y0 = (int(each / factor) for each in corner)
+    x1, y1 = (math.ceil((each + side) / factor) + 1 for each, side in zip(corner, view, strict=True))
+    part = image[y0:y1, x0:x1]
+    wide, high = (max(round(side * factor), 1) for side in part.shape[1::-1])
+    how = cv2.INTER_AREA if factor < 1 else cv2.INTER_LINEAR
+    part = np.asarray(cv2.resize(part, (wide, high), interpolation=how))
+    x, y = round(corner[0] - x0 * factor), round(corner[1] - y0 * factor)
+    part = part[max(y, 0) : max(y, 0) + view[1], max(x, 0) : max(x, 0) + view[0]]
     if part.shape[:2] == view[::-1]:
-        return part, (x, y)
+        return part
     out = np.full((view[1], view[0], 3), 114, dtype=np.uint8)
     out[: part.shape[0], : part.shape[1]] = part
-    return out, (x, y)
+    return out
 
 
-def _lit(view: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
-    """Return the view under another exposure and slightly other light."""
+def lit(view: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Return an image under another exposure and slightly other light."""
     gains = rng.uniform(0.8, 1.2) * rng.uniform(0.93, 1.07, 3)
     return np.asarray((view * gains.astype(np.float32) + rng.uniform(-12, 12)).clip(0, 255), dtype=np.uint8)

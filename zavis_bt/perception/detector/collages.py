@@ -10,7 +10,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from zavis_bt.perception.datasets import DetectionDataset
+from zavis_bt.perception.datasets import Annotation, DetectionDataset
 from zavis_bt.perception.detector.proposals import Target
 from zavis_bt.types import Box
 
@@ -18,6 +18,7 @@ _GRIDS = ((2, 2), (3, 2), (3, 3), (4, 3), (5, 4))  # columns and rows of a colla
 _PATCH = 80  # side of the patches kept [px]
 _READ_WIDTH = 320  # of the images they are cut from [px]
 _MARGIN = 0.45  # of the box's longer side, kept round it on each side
+_LEAST_VISIBLE = 0.65  # share of a thing that is in sight where it is cut out
 _LEAST_SIDE = 5.0  # of a box in a collage [px]
 
 
@@ -71,7 +72,12 @@ class Collages:
         return exposed, Target(torch.from_numpy(boxes[wide]), labels, torch.from_numpy(boxes[~wide]))
 
     def _paste(
-        self, image: NDArray[np.uint8], patch: int, corner: tuple[int, int], cell: tuple[int, int], rng: np.random.Generator
+        self,
+        image: NDArray[np.uint8],
+        patch: int,
+        corner: tuple[int, int],
+        cell: tuple[int, int],
+        rng: np.random.Generator,
     ) -> NDArray[np.float32]:
         """Draw a patch into its cell, mirrored or not and cut to about its thing, and return the thing's box."""
         box, (x, y) = self._boxes[patch], corner
@@ -95,7 +101,7 @@ def _cut(
     """Return patches (n, side, side, 3), the things' boxes in them (n, 4) and their labels (n,)."""
     patches, boxes, labels = [], [], []
     for index in range(len(dataset)):
-        wanted = [thing for thing in dataset.annotations(index) if thing.category in numbers and not thing.ignored]
+        wanted = [thing for thing in dataset.annotations(index) if _is_good(thing, numbers)]
         if not wanted:
             continue
         image = dataset.image(index, width=_READ_WIDTH)
@@ -108,6 +114,10 @@ def _cut(
     if not labels:
         return np.zeros((0, _PATCH, _PATCH, 3), np.uint8), np.zeros((0, 4), np.float32), np.zeros(0, np.int64)
     return np.stack(patches), np.array(boxes, dtype=np.float32), np.array(labels, dtype=np.int64)
+
+
+def _is_good(thing: Annotation, numbers: dict[str, int]) -> bool:
+    return thing.category in numbers and not thing.ignored and thing.visible >= _LEAST_VISIBLE
 
 
 def _patch(image: NDArray[np.uint8], box: Box) -> tuple[NDArray[np.uint8], tuple[float, float, float, float]]:

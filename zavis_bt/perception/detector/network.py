@@ -78,6 +78,10 @@ class DetectorNetwork(nn.Module):
             losses["clusters"] = self.clusters.loss(learnt.features, learnt.labels)
         return replace(learnt, losses=losses)
 
+    def normalised(self, images: Tensor) -> Tensor:
+        """Return images as the backbone reads them."""
+        return (images - self.mean) / self.std
+
     def _features(self, images: Tensor) -> tuple[dict[str, Tensor], list[tuple[int, int]]]:
-        features = self.body((images - self.mean) / self.std)
+        features = self.body(self.normalised(images))
         return features, [(images.shape[2], images.shape[3])] * len(images)

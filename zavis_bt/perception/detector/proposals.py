@@ -72,7 +72,7 @@ class ProposalNetwork(RegionProposalNetwork):  # type: ignore[misc]  # torchvisi
         labels, matched = self.assign_targets_to_anchors(proposals.anchors, known)
         real = [each == 1 for each in labels]
         for each, anchors, target in zip(labels, proposals.anchors, targets, strict=True):
-            _relabel(each, anchors, target)
+            relabel(each, anchors, target)
         regression = self.box_coder.encode(matched, proposals.anchors)
         positive, negative = (torch.cat(each).bool() for each in self.fg_bg_sampler(labels))
         sampled = torch.where(positive | negative)[0]
@@ -84,7 +84,7 @@ class ProposalNetwork(RegionProposalNetwork):  # type: ignore[misc]  # torchvisi
         return {"rpn_objectness": objectness, "rpn_boxes": error / max(len(sampled), 1)}
 
 
-def _relabel(labels: Tensor, anchors: Tensor, target: Target) -> None:
+def relabel(labels: Tensor, anchors: Tensor, target: Target) -> None:
     """Let anchors on ignored regions be neither, and those on pseudo boxes things."""
     if len(target.ignored):
         labels[(labels == 0) & (box_iou(target.ignored, anchors).amax(dim=0) > 0.3)] = -1

@@ -16,7 +16,7 @@ from zavis_bt.perception.detector.proposals import Proposals, Target
 Objectness = Callable[[NDArray[np.uint8], NDArray[np.floating]], NDArray[np.float32]]
 """o(B) of boxes (n, 4) in an image (h, w, 3), (n,) in 0..1; see `zavis_bt.perception.clip.ClipObjectness`."""
 
-_CANDIDATES, _CANDIDATE_NMS, _LEAST_SIDE = 16, 0.4, 5.0
+_CANDIDATES, _CANDIDATE_NMS, _LEAST_SIDE, _DOUBT = 12, 0.4, 5.0, 0.5
 
 
 class Labelling(Protocol):
@@ -37,9 +37,9 @@ def pseudo_count(iteration: int, iterations: int) -> int:
 class ClipLabelling:
     """The paper's: the k best proposals whose objectness for CLIP is above 0.9.
 
-    Deviations: what CLIP takes for a thing beyond the k is neither background nor thing, instead of background; labels
-    come after a first tenth of the training, when proposals are boxes; only the best 16 proposals of an image that do
-    not overlap are shown to CLIP.
+    Deviations: what else CLIP takes rather for a thing than for background (o over one half) is neither, instead of
+    background; labels come after a first tenth of the training, when proposals are boxes; only the best 12 proposals of
+    an image that do not overlap are shown to CLIP.
     """
 
     trains_proposals = True
@@ -58,9 +58,11 @@ class ClipLabelling:
             if not len(candidates):
                 continue
             chances = torch.from_numpy(self._objectness(picture, candidates.cpu().numpy()))
-            things = candidates[chances.to(candidates.device) > self._threshold]
-            target.pseudo = things[:most]
-            target.ignored = torch.cat([target.ignored, things[most:]])
+            chosen = torch.where(chances > self._threshold)[0][:most]
+            perhaps = chances > _DOUBT
+            perhaps[chosen] = False
+            target.pseudo = candidates[chosen.to(candidates.device)]
+            target.ignored = torch.cat([target.ignored, candidates[perhaps.to(candidates.device)]])
 
 
 class ProposalLabelling:

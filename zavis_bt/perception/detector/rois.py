@@ -16,7 +16,7 @@ from zavis_bt.perception.detector.config import DetectorConfig
 from zavis_bt.perception.detector.mln import Mixture, MixtureHead, mace_loss
 from zavis_bt.perception.detector.proposals import Target
 
-_SAMPLES, _POSITIVE = 64, 0.4  # boxes of an image that are learnt from, and how many of them may be things
+SAMPLES, _POSITIVE = 64, 0.4  # boxes of an image that are learnt from, and how many of them may be things
 
 
 class Regions(NamedTuple):
@@ -62,6 +62,7 @@ class RoiNetwork(nn.Module):
         self.classes = MixtureHead(parts.features, config.labels, config.components)
         self.boxes = nn.Linear(parts.features, 4)
         self.quality = nn.Linear(parts.features, 1)
+        self.samples = SAMPLES
         self._coder = BoxCoder((10.0, 10.0, 5.0, 5.0))
         self._known, self._unknown, self._background = len(config.known), config.unknown, config.labels - 1
 
@@ -82,7 +83,7 @@ class RoiNetwork(nn.Module):
     ) -> Learnt:
         """Return the losses on boxes sampled from the proposals and the things themselves."""
         pairs = zip(proposals, targets, strict=True)
-        samples = [sample(boxes, target, self._unknown, self._background) for boxes, target in pairs]
+        samples = [sample(boxes, target, self._unknown, self._background, self.samples) for boxes, target in pairs]
         boxes = [each.boxes for each in samples]
         mixture, deltas, quality, vectors = self._read(features, boxes, sizes)
         labels, truth = (torch.cat([getattr(each, name) for each in samples]) for name in ("labels", "truth"))
@@ -114,7 +115,7 @@ class RoiNetwork(nn.Module):
         return F.binary_cross_entropy_with_logits(quality[near], _paired_iou(refined, truth[near]))
 
 
-def sample(proposals: Tensor, target: Target, unknown: int | None, background: int) -> Sample:
+def sample(proposals: Tensor, target: Target, unknown: int | None, background: int, most: int = SAMPLES) -> Sample:
     """Choose boxes of an image to learn from: things where the IoU is over one half, else background.
 
     Boxes on ignored regions are left out. Boxes of pseudo labels are ``unknown`` unless a known thing is there.
@@ -135,8 +136,8 @@ def sample(proposals: Tensor, target: Target, unknown: int | None, background: i
     if len(target.ignored):
         usable[(labels == background) & (box_iou(target.ignored, boxes).amax(dim=0) > 0.3)] = False
     thing = labels != background
-    positive = _some(torch.where(usable & thing)[0], int(_SAMPLES * _POSITIVE))
-    rest = _some(torch.where(usable & ~thing)[0], _SAMPLES - len(positive))
+    positive = _some(torch.where(usable & thing)[0], int(most * _POSITIVE))
+    rest = _some(torch.where(usable & ~thing)[0], most - len(positive))
     rows = torch.cat([positive, rest])
     return Sample(boxes[rows], labels[rows], truth[rows], overlap[rows])
 

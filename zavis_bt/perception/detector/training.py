@@ -13,6 +13,7 @@ from torch import Tensor
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.datasets import DetectionDataset
+from zavis_bt.perception.detector.backbones import TinyBody
 from zavis_bt.perception.detector.batches import Batches, Views
 from zavis_bt.perception.detector.checkpoint import Checkpoint
 from zavis_bt.perception.detector.fitting import fit
@@ -20,6 +21,7 @@ from zavis_bt.perception.detector.network import DetectorNetwork
 from zavis_bt.perception.detector.proposals import Target
 from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.training_log import TrainingLog
+from zavis_bt.perception.detector.warm_up import WarmUp, warm_up
 
 _FIT_BATCHES = 40  # of the training's, for the distributions that tell unknown things
 _CLIP_NORM = 5.0
@@ -44,6 +46,8 @@ class TrainingSettings:
     save_every: int = 200
     """Iterations between checkpoints."""
     views: Views = field(default_factory=Views)
+    warm_up: WarmUp | None = None
+    """What a small backbone learns before; nothing if None."""
 
 
 class Training:
@@ -58,6 +62,7 @@ class Training:
         device: str = "cpu",
     ) -> None:
         check_data(dataset, network.config.known)
+        self._dataset = dataset
         self.network = _on(network, device).train()
         self.settings, self._labelling, self._device = settings, labelling, device
         self.optimiser = _optimiser(self.network, settings.learning_rate)
@@ -80,6 +85,8 @@ class Training:
         Raises:
             InputError: The loss is no longer a number, or an image cannot be read.
         """
+        if self.done == 0 and self.settings.warm_up is not None:
+            self._warm_up(self.settings.warm_up)
         for batch in self._remaining():
             losses = self._step(batch)
             self.done += 1
@@ -91,6 +98,19 @@ class Training:
         with _repeatable(self.settings.seed):
             fit(self.network, (self._moved(self._batches[k]) for k in range(count)), self._labelling)
         save(self.state())
+
+    def _warm_up(self, settings: WarmUp) -> None:
+        body = self.network.body
+        if isinstance(body, TinyBody):
+            with _repeatable(self.settings.seed, -1):
+                warm_up(
+                    body,
+                    self.network.normalised,
+                    self._dataset,
+                    self.network.config.known,
+                    settings,
+                    self.settings.seed,
+                )
 
     def state(self) -> Checkpoint:
         """Return all that is needed to go on."""

@@ -50,9 +50,8 @@ def load_detector(path: Path, device: str = "cpu") -> tuple[DetectorNetwork, dic
         network.load_state_dict(tensors)
         facts = json.loads(header.get("facts", "{}"))
     except (RuntimeError, KeyError, ValueError) as error:
-        first = str(error).partition("\n")[0]
         raise InputError(
-            f"{path}: weights and description do not belong together: {first} (export it again)"
+            f"{path}: weights do not belong to the architecture of their description (export it again)"
         ) from error
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -1,0 +1,140 @@
+"""Table of open-set detectors: Faster R-CNN, ORE and the paper's method, several seeds each, on the same data.
+
+    python benchmarks/detector_table.py TRAIN TEST --out DIR [--methods zavis,ore] [--seeds 0,1,2]
+
+One JSON file a row and seed; what is there is not done again, an interrupted training goes on. Several processes may
+work in one folder, each on methods or seeds of its own. With nothing left to do it only prints the table.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+from pathlib import Path
+
+import torch
+
+from zavis_bt.perception.clip import ClipModel, ClipObjectness
+from zavis_bt.perception.datasets import DetectionDataset, open_dataset
+from zavis_bt.perception.detector import (
+    Checkpoint,
+    ClipLabelling,
+    DetectorConfig,
+    DetectorNetwork,
+    NeuralDetector,
+    ProposalLabelling,
+    Training,
+    TrainingLog,
+    TrainingSettings,
+    save_detector,
+)
+from zavis_bt.perception.detector.backbones import TinyBody
+from zavis_bt.perception.detector.building import DEFAULT_KNOWN, build_network
+from zavis_bt.perception.detector.decoded import Decoded
+from zavis_bt.perception.detector.pseudo_labels import Labelling
+from zavis_bt.perception.detector.warm_up import WarmUp, warm_up
+from zavis_bt.perception.evaluation import OpenSetResult, Truth, collect, judge, truths_of
+from zavis_bt.perception.models import find_weights
+
+NAMES = {"faster_rcnn": "Faster R-CNN", "ore": "ORE", "zavis": "ours"}
+COLUMNS = {"wi": "WI", "a_ose": "A-OSE", "u_recall": "U-Recall", "u_precision": "U-Precision", "k_map": "K-mAP"}
+LEAST_SIDE = 4.0  # smaller things are ignored [px of the image that the detector sees]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("train")
+    parser.add_argument("test")
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--methods", default=",".join(NAMES))
+    parser.add_argument("--seeds", default="0,1,2")
+    parser.add_argument("--iterations", type=int, default=2000)
+    parser.add_argument("--batch", type=int, default=8)
+    parser.add_argument("--warm-up", type=int, default=2200, help="iterations, once for all rows")
+    parser.add_argument("--width", type=int, default=320, help="of the test images [px]")
+    parser.add_argument("--images", type=int, help="of the test, from the first; all if not given")
+    parser.add_argument("--threads", type=int, default=1)
+    given = parser.parse_args()
+    torch.set_num_threads(given.threads)
+    given.out.mkdir(parents=True, exist_ok=True)
+    train = Decoded(open_dataset(given.train), given.out / "train.npy", 320)
+    test = open_dataset(given.test)
+    for seed in map(int, given.seeds.split(",")):
+        for method in given.methods.split(","):
+            result = given.out / f"{method}-{seed}.json"
+            if result.exists():
+                continue
+            detector = trained(method, seed, train, given.out / f"{method}-{seed}", given)
+            judged = evaluated(detector, test, given.width, given.images)
+            result.write_text(json.dumps({"iterations": given.iterations, "width": given.width, **judged.as_dict()}))
+    print(table(given.out))
+
+
+def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given: argparse.Namespace) -> NeuralDetector:
+    """Train, or go on training, one detector."""
+    folder.mkdir(exist_ok=True)
+    config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
+    settings = TrainingSettings(given.iterations, given.batch, 1.5e-3, seed)
+    network = build_network(config, seed)
+    network.body.load_state_dict(warmed_up(network, data, given.out / "warm-up.pt", given.warm_up))
+    training = Training(network, data, settings, labelling(method))
+    if (folder / "checkpoint.pt").exists():
+        training.resume(Checkpoint.load(folder))
+    with TrainingLog(folder) as log:
+        training.run(log, lambda state: state.save(folder))
+    facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed}
+    facts |= {"iterations": given.iterations, "batch": given.batch, "warm_up": given.warm_up}
+    save_detector(training.network, folder / "detector.safetensors", facts)
+    return NeuralDetector.load(folder / "detector.safetensors")
+
+
+def warmed_up(network: DetectorNetwork, data: DetectionDataset, file: Path, iterations: int) -> dict[str, torch.Tensor]:
+    """Return the backbone that all rows begin with, as usual detectors do with one trained on ImageNet."""
+    if not file.exists():
+        assert isinstance(network.body, TinyBody)
+        warm_up(network.body, network.normalised, data, DEFAULT_KNOWN, WarmUp(iterations), seed=0)
+        torch.save(network.body.state_dict(), file)
+    weights: dict[str, torch.Tensor] = torch.load(file, weights_only=True)
+    return weights
+
+
+def labelling(method: str) -> Labelling | None:
+    if method == "zavis":
+        return ClipLabelling(ClipObjectness(ClipModel.load(str(find_weights("zavis-tiny")))))
+    return ProposalLabelling() if method == "ore" else None
+
+
+def evaluated(detector: NeuralDetector, test: DetectionDataset, width: int, images: int | None) -> OpenSetResult:
+    chosen = range(len(test))[:images]
+    found = collect(test, detector.detect_image, indices=chosen, width=width)
+    truths = [large_enough(truth, width / test.size(truth.image)[0]) for truth in truths_of(test, chosen)]
+    return judge(found, truths, detector.classes, len(chosen))
+
+
+def large_enough(truth: Truth, scale: float) -> Truth:
+    side = min(truth.box.x1 - truth.box.x0, truth.box.y1 - truth.box.y0) * scale
+    return Truth(truth.image, truth.box, truth.label, truth.ignored or side < LEAST_SIDE)
+
+
+def table(folder: Path) -> str:
+    """Return the table in Markdown, mean ± standard deviation over the seeds that are done."""
+    lines = [f"| | {' | '.join(COLUMNS.values())} | seeds |", "|---|" + "---|" * (len(COLUMNS) + 1)]
+    for method, name in NAMES.items():
+        rows = [json.loads(path.read_text()) for path in sorted(folder.glob(f"{method}-*.json"))]
+        cells = [cell([row[column] for row in rows], column) for column in COLUMNS]
+        lines.append(f"| {name} | {' | '.join(cells)} | {len(rows)} |")
+    return "\n".join(lines)
+
+
+def cell(values: list[float | None], column: str) -> str:
+    numbers = [value for value in values if value is not None]
+    if not numbers or (column.startswith("u_") and not any(numbers)):
+        return "-"
+    digits = {"a_ose": 0, "wi": 4}.get(column, 3)
+    mean, spread = statistics.fmean(numbers), statistics.stdev(numbers) if len(numbers) > 1 else 0.0
+    return f"{mean:.{digits}f} ± {spread:.{digits}f}"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""`zavis detector`, from data to a judged detector."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+pytest.importorskip("torch")
+
+from zavis_bt.cli.detector import app  # needs torch
+from zavis_bt.errors import InputError
+
+
+def detector(*arguments: str) -> Result:
+    return CliRunner().invoke(app, list(arguments))
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+def test_train_export_and_judge_on_drawn_rooms(tmp_path: Path) -> None:
+    run, file = str(tmp_path / "run"), str(tmp_path / "detector.safetensors")
+    short = ("--method", "faster_rcnn", "--iterations", "2", "--batch", "2", "--width", "64")
+    result = detector("train", "sim:8:3", "--out", run, "--known", "sofa,dining table,sink,bench,tv,oven", *short)
+    assert result.exit_code == 0, result.exception
+    assert len((tmp_path / "run" / "log.jsonl").read_text().splitlines()) == 0  # too short for a line
+    again = detector("train", "sim:8:3", "--out", run, "--known", "sofa,dining table,sink,bench,tv,oven", *short)
+    assert isinstance(again.exception, InputError)
+    assert "holds a training (go on with --resume" in str(again.exception)
+    assert detector("export", run, file, "--width", "64", "--known-score", "0.2").exit_code == 0
+    judged = detector("eval", file, "sim:8:3", "--json", "--images", "2")
+    assert judged.exit_code == 0, judged.exception
+    content = json.loads(judged.output)
+    assert content["images"] == 2
+    assert content["facts"]["rendered"] is True
+    assert content["facts"]["method"] == "faster_rcnn"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("train", "sim:none", "--out", "x"), "is no number of drawn images"),
+        (("train", "sim:4", "--out", "x", "--method", "yolo"), "'yolo' is unknown"),
+        (("train", "sim:4", "--out", "x", "--device", "tpu"), "'tpu' is unknown (cpu or cuda)"),
+        (("train", "nowhere", "--out", "x"), "there is no such data set"),
+        (("export", "nowhere", "x.safetensors"), "holds no training"),
+        (("export", "nowhere", "x.pt"), "needs to end in .safetensors"),
+    ],
+)
+def test_faults_are_told_in_one_line(arguments: tuple[str, ...], told: str) -> None:
+    error = detector(*arguments).exception
+    assert isinstance(error, InputError)
+    assert told in str(error)
+    assert "\n" not in str(error)
