@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from zavis_bt.perception.datasets import DetectionDataset
     from zavis_bt.types import FloatArray
 
-_BINS, _WIDTH = 24, 40  # of the histogram
+_BINS, _WIDTH = 20, 28  # of the histogram
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 app = typer.Typer(help="Look at eyes, and measure what their scores mean.", no_args_is_help=True)

@@ -30,6 +30,7 @@ from zavis_bt.perception.naming import key
 from zavis_bt.types import UNKNOWN_CLASS, FloatArray
 
 _MUCH = 0.05  # share of right pairs
+_FALSE_LANDMARKS = 0.05  # share of the boxes that show none
 _LEAST_PAIRS = 30  # from which a threshold means something
 _TEMPERATURES = np.geomspace(0.05, 50.0, 241)
 
@@ -98,8 +99,8 @@ def calibrate(
     rows, truth = _landmark_rows(looks, [texts.index(name) for name in names], names)
     is_landmark = truth >= 0
     _need(int(is_landmark.sum()), "unknown boxes around landmarks" + (f" ({', '.join(names)})" if names else ""))
-    best, told = rows.max(axis=1), rows[is_landmark]
-    landmark = _dividing(best, is_landmark)
+    best, told, others = rows.max(axis=1), rows[is_landmark], rows[~is_landmark].max(axis=1)
+    landmark = float(np.quantile(others, 1 - _FALSE_LANDMARKS) if len(others) else best.min())
     temperature = _temperature(told, truth[is_landmark])
     known = max(_sure_of_known(looks), detection)
     return Calibration(
@@ -109,7 +110,7 @@ def calibrate(
         wrong,
         recall=float((right >= match).mean()),
         landmark_recall=float((best[is_landmark] >= landmark).mean()),
-        landmark_false=float((best[~is_landmark] >= landmark).mean()) if (~is_landmark).any() else 0.0,
+        landmark_false=float((others >= landmark).mean()) if len(others) else 0.0,
         landmark_accuracy=float((told.argmax(axis=1) == truth[is_landmark]).mean()),
         landmarks=int(is_landmark.sum()),
         boxes=sum(len(look.shows) for look in looks),
