@@ -78,7 +78,9 @@ def test_texts_are_matched_with_the_boxes_that_a_mission_would_match() -> None:
     (seen,) = look_at(eyes, images, [0], TEXTS)
     assert seen.shows == ("sofa", "mug")
     assert seen.scores.tolist() == [[1, 2, 3, 4]] * 2
-    assert seen.matched.tolist() == [[False, False, False, True], [True] * 4]
+    assert seen.named.tolist() == [[False, False, False, True], [False] * 4]
+    assert seen.matched(Thresholds()).tolist() == [[False, False, False, True], [True] * 4]
+    assert seen.matched(Thresholds(known=0.95)).all()
     assert seen.labels == ("sofa", UNKNOWN_CLASS)
     assert seen.confidence.tolist() == [0.9, 0.5]
     assert seen.present == {"sofa", "mug"}
@@ -94,8 +96,8 @@ def looks(count: int, *rows: tuple[str | None, list[float]], spread: float = 0.0
 
 
 def look(shows: tuple[str | None, ...], scores: FloatArray, present: frozenset[str] = frozenset()) -> Look:
-    every, labels = np.ones(scores.shape, dtype=np.bool_), (UNKNOWN_CLASS,) * len(shows)
-    return Look(shows, scores, every, labels, np.full(len(shows), 0.5), present)
+    no_class, labels = np.zeros(scores.shape, dtype=np.bool_), (UNKNOWN_CLASS,) * len(shows)
+    return Look(shows, scores, no_class, labels, np.full(len(shows), 0.5), present)
 
 
 def test_match_threshold_is_the_quantile_of_what_is_not_there() -> None:

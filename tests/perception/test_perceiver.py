@@ -269,9 +269,14 @@ def test_default_landmarks_hold_the_papers() -> None:
     assert not set(DEFAULT_KNOWN_LANDMARKS) & set(DEFAULT_UNKNOWN_LANDMARKS)
 
 
-def test_known_class_needs_confidence_to_be_a_landmark() -> None:
-    assert len(perceive(ScriptedMatcher(), sofa(score=0.4), known=0.4).sightings) == 1
-    assert not perceive(ScriptedMatcher(), sofa(score=0.39), known=0.4).sightings
+def test_class_that_the_detector_is_not_sure_of_counts_as_unknown() -> None:
+    matcher = ScriptedMatcher({SOFA_BOX: {"bed": 26.0, "mug": 31.0}})
+    sure = perceive(matcher, sofa(score=0.4), known=0.4)
+    assert [sighting.label for sighting in sure.sightings] == ["sofa"]
+    assert not sure.candidates
+    unsure = perceive(matcher, sofa(score=0.39), known=0.4, target="lamp")
+    assert [sighting.label for sighting in unsure.sightings] == ["bed"]
+    assert perceive(matcher, sofa(score=0.39), known=0.4).candidates
 
 
 def test_faint_boxes_are_not_looked_at() -> None:

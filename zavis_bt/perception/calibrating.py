@@ -89,22 +89,22 @@ def calibrate(
     contrast = _contrast(looks, texts) if relative else None
     if contrast is not None:
         looks = [replace(look, scores=contrast.apply(look.scores, look.scores)) for look in looks]
-    right = np.concatenate([np.empty(0), *(_right(look, texts) for look in looks)])
-    wrong = np.concatenate([np.empty(0), *(_wrong(look, texts) for look in looks)])
+    first = Thresholds(detection=detection, known=round(max(_sure_of_known(looks), detection), 3))
+    right = np.concatenate([np.empty(0), *(_right(look, texts, first) for look in looks)])
+    wrong = np.concatenate([np.empty(0), *(_wrong(look, texts, first) for look in looks)])
     _need(len(right), "boxes around what is annotated")
     match = float(np.quantile(wrong, 1 - false_alarms, method="higher"))
     if not np.isfinite(match):  # rarer than asked for, even if every box of another thing were a candidate
         match = float(right.min())
     names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
-    rows, truth = _landmark_rows(looks, [texts.index(name) for name in names], names)
+    rows, truth = _landmark_rows(looks, [texts.index(name) for name in names], names, first)
     is_landmark = truth >= 0
     _need(int(is_landmark.sum()), "unknown boxes around landmarks" + (f" ({', '.join(names)})" if names else ""))
     best, told, others = rows.max(axis=1), rows[is_landmark], rows[~is_landmark].max(axis=1)
     landmark = float(np.quantile(others, 1 - _FALSE_LANDMARKS) if len(others) else best.min())
     temperature = _temperature(told, truth[is_landmark])
-    known = max(_sure_of_known(looks), detection)
     return Calibration(
-        Thresholds(round(match, 2), round(landmark, 2), round(temperature, 3), detection, round(known, 3)),
+        replace(first, match=round(match, 2), landmark=round(landmark, 2), temperature=round(temperature, 3)),
         contrast,
         right,
         wrong,
@@ -134,25 +134,29 @@ def _need(count: int, what: str) -> None:
         raise InputError(f"calibrate: only {count} {what} (at least {_LEAST_PAIRS}: more images, or a better detector)")
 
 
-def _right(look: Look, texts: Sequence[str]) -> FloatArray:
+def _right(look: Look, texts: Sequence[str], thresholds: Thresholds) -> FloatArray:
     """Return the scores of boxes with the name of what they show, as far as the two are matched."""
+    matched = look.matched(thresholds)
     pairs = [(k, texts.index(shown)) for k, shown in enumerate(look.shows) if shown in texts]
-    return np.array([look.scores[pair] for pair in pairs if look.matched[pair]])
+    return np.array([look.scores[pair] for pair in pairs if matched[pair]])
 
 
-def _wrong(look: Look, texts: Sequence[str]) -> FloatArray:
+def _wrong(look: Look, texts: Sequence[str], thresholds: Thresholds) -> FloatArray:
     """Return the highest score of each text that nothing in the image answers to; -inf without a box."""
     absent = [column for column, text in enumerate(texts) if text not in look.present]
-    scores = np.where(look.matched, look.scores, -np.inf)
+    scores = np.where(look.matched(thresholds), look.scores, -np.inf)
     return np.asarray(scores[:, absent].max(axis=0, initial=-np.inf))
 
 
-def _landmark_rows(looks: Sequence[Look], columns: list[int], names: list[str]) -> tuple[FloatArray, NDArray[np.intp]]:
+def _landmark_rows(
+    looks: Sequence[Look], columns: list[int], names: list[str], thresholds: Thresholds
+) -> tuple[FloatArray, NDArray[np.intp]]:
     """Return the scores (n, m) of ``unknown`` boxes with the landmarks' names, and the index of the right one or -1."""
     rows, truth = [np.empty((0, len(columns)))], []
     for look in looks:
+        matched = look.matched(thresholds)
         for k, shown in enumerate(look.shows):
-            if columns and look.matched[k, columns].all():
+            if columns and matched[k, columns].all():
                 rows.append(look.scores[k, columns][None])
                 truth.append(names.index(shown) if shown in names else -1)
     return np.concatenate(rows), np.array(truth, dtype=np.intp)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, fields
 
 from zavis_bt.errors import InputError
+from zavis_bt.types import UNKNOWN_CLASS
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +22,7 @@ class Thresholds:
     detection: float = 0.0
     """Confidence below which the detector's boxes are not looked at, 0 to 1."""
     known: float = 0.0
-    """Confidence below which a box of a known class is no landmark, 0 to 1."""
+    """Confidence below which a box of a known class counts as ``unknown``, 0 to 1."""
 
     def __post_init__(self) -> None:
         """Check the ranges.
@@ -37,3 +38,7 @@ class Thresholds:
         for name, share in (("detection", self.detection), ("known", self.known)):
             if not 0.0 <= share < 1.0:
                 raise InputError(f"thresholds: {name} is {share} (0 or more, below 1)")
+
+    def is_unknown(self, label: str, confidence: float) -> bool:
+        """Return whether a detector's box is to be told by matching."""
+        return label == UNKNOWN_CLASS or confidence < self.known

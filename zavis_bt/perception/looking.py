@@ -1,7 +1,7 @@
 """What eyes make of labelled images.
 
 A detected box shows the annotation that it overlaps by half (IoU); one that overlaps none by a third shows nothing;
-the others are left out. A text is matched with the boxes that a `Perceiver` would match with it.
+the others are left out.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from zavis_bt.perception.calibration import Thresholds
 from zavis_bt.perception.datasets import Annotation, DetectionDataset
 from zavis_bt.perception.eyes import Eyes
 from zavis_bt.perception.naming import may_name
@@ -29,14 +30,20 @@ class Look:
     """(n,) category that each box shows; None for nothing."""
     scores: FloatArray
     """(n, m) of n boxes with m texts."""
-    matched: NDArray[np.bool_]
-    """(n, m) whether the two would be matched in a mission."""
+    named: NDArray[np.bool_]
+    """(n, m) whether the box has a known class that the text names."""
     labels: tuple[str, ...]
     """(n,) the detector's."""
     confidence: FloatArray
     """(n,) the detector's, 0 to 1."""
     present: frozenset[str]
     """Categories that are annotated, be it as ignored."""
+
+    def matched(self, thresholds: Thresholds) -> NDArray[np.bool_]:
+        """Return (n, m) whether a `Perceiver` would match the box with the text."""
+        rows = zip(self.labels, self.confidence.tolist(), strict=True)
+        unknown = np.array([thresholds.is_unknown(*row) for row in rows], dtype=np.bool_)
+        return np.asarray(unknown[:, None] | self.named)
 
 
 def look_at(eyes: Eyes, images: DetectionDataset, indices: Sequence[int], texts: Sequence[str]) -> Iterator[Look]:
@@ -62,11 +69,11 @@ def look_at(eyes: Eyes, images: DetectionDataset, indices: Sequence[int], texts:
                 labels.append(found.label)
                 confidence.append(found.score)
                 shows.append(shown)
-        matched = np.array([[_is_matched(label, text) for text in texts] for label in labels], dtype=np.bool_)
+        named = np.array([[_is_named(text, label) for text in texts] for label in labels], dtype=np.bool_)
         shape = len(boxes), len(texts)
         scores = np.asarray(eyes.matcher.match(frame, boxes, texts), dtype=np.float64) if boxes else np.empty(shape)
         present = frozenset(annotation.category for annotation in annotations)
-        yield Look(tuple(shows), scores, matched.reshape(shape), tuple(labels), np.array(confidence), present)
+        yield Look(tuple(shows), scores, named.reshape(shape), tuple(labels), np.array(confidence), present)
 
 
 def frame_of(rgb: NDArray[np.uint8], stamp: float = 0.0) -> RgbdFrame:
@@ -85,5 +92,5 @@ def what_it_shows(box: Box, annotations: Sequence[Annotation]) -> tuple[str | No
     return annotations[best].category, overlaps[best] >= _SHOWN and not annotations[best].ignored
 
 
-def _is_matched(label: str, text: str) -> bool:
-    return label == UNKNOWN_CLASS or may_name(text, label)
+def _is_named(text: str, label: str) -> bool:
+    return label != UNKNOWN_CLASS and may_name(text, label)

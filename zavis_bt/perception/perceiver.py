@@ -15,7 +15,6 @@ from zavis_bt.perception.naming import key, may_name
 from zavis_bt.perception.projection import Located, locate_landmark, locate_object
 from zavis_bt.protocols import Detector, Matcher
 from zavis_bt.types import (
-    UNKNOWN_CLASS,
     Box,
     Candidate,
     Detection,
@@ -34,8 +33,8 @@ Distribution = tuple[tuple[str, float], ...]
 class Perceiver:
     """The paper's detection module: open-set detection, text-image matching, projection to the map.
 
-    - A box of a known landmark class, if the detector is sure enough of it, is a sighting with the detector's class
-      probabilities, restricted to the known landmarks.
+    - A box of a known landmark class is a sighting with the detector's class probabilities, restricted to the known
+      landmarks.
     - An ``unknown`` box is matched with the names of the unknown landmarks and with the target, in one call of the
       matcher a frame. If its score for the target is at least m_t, it is a candidate. If not, and its best landmark's
       score is at least the landmarks' threshold and it is as large as furniture, it is a sighting with
@@ -45,7 +44,8 @@ class Perceiver:
 
     Deviations from the paper, which matches ``unknown`` boxes only and makes a landmark of each: boxes of a known
     class that the target's text names ("the sofa", "spray bottle" for ``bottle``) are matched with the target, too,
-    as the user may ask for what the detector happens to know; what matches the target, matches no landmark's name or
+    as the user may ask for what the detector happens to know; a box whose class the detector is not sure of counts as
+    ``unknown``; what matches the target, matches no landmark's name or
     is small is no landmark, so that mugs do not become desks; of boxes that show the same thing one is kept, of a
     known and an ``unknown`` one the known.
     """
@@ -99,10 +99,10 @@ class Perceiver:
         boxes = [
             (detection, box) for detection in self._detect(frame) if (box := clip(detection.box, frame.intrinsics))
         ]
-        sure = [(detection, box) for detection, box in boxes if detection.score >= self._thresholds.known]
-        known = [(detection, box) for detection, box in sure if key(detection.label) in self._known]
-        unknown = [(detection, box) for detection, box in boxes if detection.label == UNKNOWN_CLASS]
-        named = [(d, box) for d, box in boxes if d.label != UNKNOWN_CLASS and may_name(target, d.label)]
+        unknown = [(d, box) for d, box in boxes if self._thresholds.is_unknown(d.label, d.score)]
+        classed = [(d, box) for d, box in boxes if not self._thresholds.is_unknown(d.label, d.score)]
+        known = [(d, box) for d, box in classed if key(d.label) in self._known]
+        named = [(d, box) for d, box in classed if may_name(target, d.label)]
         matched = [box for _, box in (*unknown, *named)]
         scores = self._match(frame, matched, target)
         sightings = self._known_sightings(frame, known) + self._unknown_sightings(frame, unknown, scores)
