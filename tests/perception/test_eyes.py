@@ -17,7 +17,7 @@ from zavis_bt.perception import Eyes, EyesSettings, Thresholds, eyes, neural, op
 from zavis_bt.perception.contrast import Contrast, ContrastMatcher
 from zavis_bt.perception.eyes_file import read_eyes, write_eyes
 from zavis_bt.perception.several_scales import SeveralScales
-from zavis_bt.types import Box
+from zavis_bt.types import Box, Detection
 
 BOX = Box(1, 1, 9, 9)
 GOOD = """\
@@ -183,6 +183,6 @@ def test_contrast_out_of_range_is_refused(texts: tuple[str, ...], temperature: f
 def test_several_scales_keep_the_best_box_of_each_thing() -> None:
     other = Box(20, 20, 40, 40)
     small = ScriptedDetector(unknown(Box(1, 1, 9, 8.5), 0.9))
-    large = ScriptedDetector(unknown(BOX, 0.8), unknown(other, 0.95))
+    large = ScriptedDetector(unknown(BOX, 0.8), unknown(other, 0.95), Detection(BOX, "sofa", 0.3))
     found = SeveralScales((small, large)).detect(frame_of([]))
-    assert [(one.box, one.score) for one in found] == [(other, 0.95), (Box(1, 1, 9, 8.5), 0.9)]
+    assert [(one.box, one.score) for one in found] == [(other, 0.95), (Box(1, 1, 9, 8.5), 0.9), (BOX, 0.3)]

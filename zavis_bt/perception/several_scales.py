@@ -18,6 +18,10 @@ class SeveralScales:
         self._detectors = tuple(detectors)
 
     def detect(self, frame: RgbdFrame) -> list[Detection]:
-        """Return what all of them see, best first; of boxes around one thing the best is kept."""
+        """Return what all of them see, best first; of boxes of one class around one thing the best is kept."""
         found = [detection for detector in self._detectors for detection in detector.detect(frame)]
-        return suppress(sorted(found, key=lambda one: -one.score), lambda one: one.box, _SAME)
+        kept: list[Detection] = []
+        for label in dict.fromkeys(one.label for one in found):
+            alike = sorted((one for one in found if one.label == label), key=lambda one: -one.score)
+            kept += suppress(alike, lambda one: one.box, _SAME)
+        return sorted(kept, key=lambda one: -one.score)
