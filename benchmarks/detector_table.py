@@ -29,7 +29,6 @@ from zavis_bt.perception.detector import (
     TrainingSettings,
     save_detector,
 )
-from zavis_bt.perception.detector.backbones import TinyBody
 from zavis_bt.perception.detector.building import DEFAULT_KNOWN, build_network
 from zavis_bt.perception.detector.decoded import Decoded
 from zavis_bt.perception.detector.pseudo_labels import Labelling
@@ -51,7 +50,7 @@ def main() -> None:
     parser.add_argument("--seeds", default="0,1,2")
     parser.add_argument("--iterations", type=int, default=2000)
     parser.add_argument("--batch", type=int, default=8)
-    parser.add_argument("--warm-up", type=int, default=2200, help="iterations, once for all rows")
+    parser.add_argument("--warm-up", type=int, default=2200, help="iterations of each part, once for all rows")
     parser.add_argument("--width", type=int, default=320, help="of the test images [px]")
     parser.add_argument("--images", type=int, help="of the test, from the first; all if not given")
     parser.add_argument("--threads", type=int, default=1)
@@ -75,9 +74,9 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     """Train, or go on training, one detector."""
     folder.mkdir(exist_ok=True)
     config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
-    settings = TrainingSettings(given.iterations, given.batch, 1.5e-3, seed)
+    settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed)
     network = build_network(config, seed)
-    network.body.load_state_dict(warmed_up(network, data, given.out / "warm-up.pt", given.warm_up))
+    begin(network, data, given.out / "warm-up.pt", given.warm_up)
     training = Training(network, data, settings, labelling(method))
     if (folder / "checkpoint.pt").exists():
         training.resume(Checkpoint.load(folder))
@@ -89,14 +88,15 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     return NeuralDetector.load(folder / "detector.safetensors")
 
 
-def warmed_up(network: DetectorNetwork, data: DetectionDataset, file: Path, iterations: int) -> dict[str, torch.Tensor]:
-    """Return the backbone that all rows begin with, as usual detectors do with one trained on ImageNet."""
+def begin(network: DetectorNetwork, data: DetectionDataset, file: Path, iterations: int) -> None:
+    """Give the network the backbone and box head that all rows begin with, as usual detectors do with ImageNet's."""
     if not file.exists():
-        assert isinstance(network.body, TinyBody)
-        warm_up(network.body, network.normalised, data, DEFAULT_KNOWN, WarmUp(iterations), seed=0)
-        torch.save(network.body.state_dict(), file)
-    weights: dict[str, torch.Tensor] = torch.load(file, weights_only=True)
-    return weights
+        taught = build_network(DetectorConfig(DEFAULT_KNOWN, "faster_rcnn"), 0)
+        warm_up(taught, data, WarmUp(iterations, iterations), seed=0)
+        torch.save({"body": taught.body.state_dict(), "head": taught.rois.head.state_dict()}, file)
+    weights = torch.load(file, weights_only=True)
+    network.body.load_state_dict(weights["body"])
+    network.rois.head.load_state_dict(weights["head"])
 
 
 def labelling(method: str) -> Labelling | None:

@@ -26,9 +26,10 @@ from zavis_bt.perception.detector import (  # noqa: E402
     Views,
 )
 from zavis_bt.perception.detector.backbones import TinyBody  # noqa: E402
+from zavis_bt.perception.detector.batches import Batches  # noqa: E402
 from zavis_bt.perception.detector.building import build_network, export_training  # noqa: E402
 from zavis_bt.perception.detector.decoded import Decoded  # noqa: E402
-from zavis_bt.perception.detector.warm_up import WarmUp, warm_up  # noqa: E402
+from zavis_bt.perception.detector.warm_up import WarmUp, warm_up_body, warm_up_boxes  # noqa: E402
 
 SHORT = TrainingSettings(iterations=20, batch=2, learning_rate=3e-3, save_every=7, views=Views(96, 1.5, 0.0))
 
@@ -168,9 +169,19 @@ def test_full_size_detectors_learn_a_step_and_detect(tmp_path: Path, backbone: s
 def test_a_small_backbone_learns_to_tell_things_first(tmp_path: Path) -> None:
     data = open_dataset(write_coco_scenes(tmp_path / "data"))
     network = build_network(DetectorConfig(KNOWN), 0)
-    settings = WarmUp(iterations=30, batch=8)
     assert isinstance(network.body, TinyBody)
-    assert warm_up(network.body, network.normalised, data, KNOWN, settings, seed=0) > 0.8
+    assert warm_up_body(network.body, network.normalised, data, KNOWN, WarmUp(30, batch=8), seed=0) > 0.8
+
+
+def test_box_heads_learn_to_tell_things_without_proposals(tmp_path: Path) -> None:
+    data = open_dataset(write_coco_scenes(tmp_path / "data"))
+    network = build_network(DetectorConfig(KNOWN), 0)
+    losses: list[float] = []
+    batches = Batches(data, KNOWN, views=Views(96, mosaic=1.0, large=0.0), size=2, count=12, seed=0)
+    before = {name: value.clone() for name, value in network.proposals.state_dict().items()}
+    warm_up_boxes(network, batches, 2e-3, 0, lambda done, loss: losses.append(loss))
+    assert np.mean(losses[-3:]) < 0.8 * losses[0]
+    assert all(torch.equal(value, before[name]) for name, value in network.proposals.state_dict().items())
 
 
 def test_decoded_images_are_the_data_sets(tmp_path: Path) -> None:

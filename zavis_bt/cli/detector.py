@@ -44,7 +44,7 @@ def train(
     workers: Annotated[int, typer.Option("--workers", "-j", min=0, help="Processes that read images.")] = 0,
     width: Annotated[int | None, typer.Option(min=32, help="Of what is learnt from [px]; by the backbone.")] = None,
     warm_up: Annotated[
-        int, typer.Option(min=0, help="Iterations in which a tiny backbone first learns to tell cut-out things.")
+        int, typer.Option(min=0, help="Iterations in which a tiny detector first learns to tell things, twice.")
     ] = 0,
 ) -> None:
     """Train a detector on labelled images; an interrupted training goes on with --resume."""
@@ -64,7 +64,7 @@ def train(
     views = Views() if backbone == "tiny" else Views(width or 800, zoom=1.5, large=0.0)
     peak = rate or (2e-3 if backbone == "tiny" else 1e-4)
     settings = TrainingSettings(
-        iterations, batch, peak, seed, workers, views=views, warm_up=WarmUp(warm_up) if warm_up else None
+        iterations, batch, peak, seed, workers, views=views, warm_up=WarmUp(warm_up, warm_up) if warm_up else None
     )
     training = Training(network, images, settings, _labelling(method, clip, device), device)
     if before is not None:

@@ -29,7 +29,9 @@ class Views:
     large: float = 0.2
     """Share of the iterations whose views are twice as wide, of a quarter as many images."""
     mosaic: float = 0.5
-    """Share of the views that are put together of four windows around known things."""
+    """Share of the views that are put together of windows around known things."""
+    grids: tuple[int, ...] = (2, 3)
+    """So many windows across and down, drawn from these."""
 
 
 class Batches(torch.utils.data.Dataset[tuple[Tensor, list[Target]]]):
@@ -72,18 +74,19 @@ class Batches(torch.utils.data.Dataset[tuple[Tensor, list[Target]]]):
         )
 
     def _mosaic(self, index: int, size: tuple[int, int], rng: np.random.Generator) -> tuple[NDArray[np.uint8], Target]:
-        """Return four windows of half the size, each around a known thing of another image."""
-        half = (size[0] // 2, size[1] // 2)
-        view, parts = np.empty((size[1], size[0], 3), dtype=np.uint8), []
-        for number in range(4):
-            image, part = self._around_thing(index, half, rng)
-            x, y = number % 2 * half[0], number // 2 * half[1]
-            view[y : y + half[1], x : x + half[0]] = image
-            part.boxes += torch.tensor([x, y, x, y])
-            part.ignored += torch.tensor([x, y, x, y])
-            parts.append(part)
+        """Return a grid of windows, each around a known thing of another image."""
+        grid = int(rng.choice(self._views.grids))
+        part = (size[0] // grid, size[1] // grid)
+        view, parts = np.full((size[1], size[0], 3), 114, dtype=np.uint8), []
+        for number in range(grid * grid):
+            image, target = self._around_thing(index, part, rng)
+            x, y = number % grid * part[0], number // grid * part[1]
+            view[y : y + part[1], x : x + part[0]] = image
+            target.boxes += torch.tensor([x, y, x, y])
+            target.ignored += torch.tensor([x, y, x, y])
+            parts.append(target)
             index = self._with_known(rng)
-        columns = (torch.cat([getattr(part, name) for part in parts]) for name in ("boxes", "labels", "ignored"))
+        columns = (torch.cat([getattr(each, name) for each in parts]) for name in ("boxes", "labels", "ignored"))
         return view, Target(*columns)
 
     def _with_known(self, rng: np.random.Generator) -> int:
@@ -105,7 +108,7 @@ class Batches(torch.utils.data.Dataset[tuple[Tensor, list[Target]]]):
         if not things:
             return self._window(index, fit, (0, 0), size, rng)
         box = np.array(things[int(rng.integers(len(things)))].box)
-        side = math.exp(rng.uniform(math.log(14), math.log(0.9 * size[1])))
+        side = math.exp(rng.uniform(math.log(12), math.log(0.9 * size[1])))
         scale = float(np.clip(side / max(box[2:] - box[:2]), fit, 1.5 * self._views.width * self._views.zoom / full[0]))
         low = np.ceil(box[2:] * scale - size).clip(0)
         high = np.maximum(np.minimum(box[:2] * scale, np.array(full) * scale - size), low)

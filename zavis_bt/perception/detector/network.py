@@ -16,7 +16,7 @@ from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.rois import Learnt, Regions, RoiNetwork
 
 _MEAN, _STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)  # of ImageNet, as torchvision's weights want it
-_TEST_PROPOSALS = {"tiny": 80, "resnet50_fpn": 300, "resnet50_c4": 300}
+_TEST_PROPOSALS = {"tiny": 120, "resnet50_fpn": 300, "resnet50_c4": 300}
 
 
 class DetectorNetwork(nn.Module):

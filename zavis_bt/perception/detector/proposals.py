@@ -26,6 +26,10 @@ class Target:
     pseudo: Tensor = field(default_factory=lambda: torch.zeros(0, 4))
     """(k, 4) boxes that are thought to be unknown things."""
 
+    def to(self, device: str | torch.device) -> Target:
+        """Return the same on a device."""
+        return Target(*(each.to(device) for each in (self.boxes, self.labels, self.ignored, self.pseudo)))
+
 
 @dataclass(frozen=True, slots=True)
 class Proposals:

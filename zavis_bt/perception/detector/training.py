@@ -100,17 +100,9 @@ class Training:
         save(self.state())
 
     def _warm_up(self, settings: WarmUp) -> None:
-        body = self.network.body
-        if isinstance(body, TinyBody):
+        if isinstance(self.network.body, TinyBody):
             with _repeatable(self.settings.seed, -1):
-                warm_up(
-                    body,
-                    self.network.normalised,
-                    self._dataset,
-                    self.network.config.known,
-                    settings,
-                    self.settings.seed,
-                )
+                warm_up(self.network, self._dataset, settings, self.settings.seed)
 
     def state(self) -> Checkpoint:
         """Return all that is needed to go on."""
@@ -181,10 +173,7 @@ class Training:
     def _moved(self, batch: Batch) -> Batch:
         images, targets = batch
         here = images.to(self._device).contiguous(memory_format=torch.channels_last)
-        for target in targets:
-            for name in ("boxes", "labels", "ignored", "pseudo"):
-                setattr(target, name, getattr(target, name).to(self._device))
-        return here, targets
+        return here, [target.to(self._device) for target in targets]
 
     def _rate(self, done: int) -> float:
         rise = min(100, max(self.settings.iterations // 10, 1))

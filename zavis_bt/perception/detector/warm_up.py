@@ -16,11 +16,14 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn import functional as F
+from torchvision.ops import clip_boxes_to_image
 
 from zavis_bt.perception.datasets import DetectionDataset
 from zavis_bt.perception.detector.backbones import TinyBody
-from zavis_bt.perception.detector.batches import lit
+from zavis_bt.perception.detector.batches import Batches, Views, lit
+from zavis_bt.perception.detector.network import DetectorNetwork
 
+_SAMPLES = 96  # boxes of a view of many things
 _SIDE, _LEAST_SIDE, _WIDTH = 64, 20.0, 320  # of cut-outs, of things in the full image, of the images that are cut [px]
 
 
@@ -28,13 +31,30 @@ _SIDE, _LEAST_SIDE, _WIDTH = 64, 20.0, 320  # of cut-outs, of things in the full
 class WarmUp:
     """How the backbone is prepared."""
 
-    iterations: int = 2000
+    iterations: int = 2200
+    """With cut-outs, backbone alone."""
+    box_iterations: int = 2200
+    """With boxes in views of many known things, backbone and box head."""
     batch: int = 64
     """Cut-outs an iteration."""
+    box_batch: int = 8
+    """Views an iteration."""
     learning_rate: float = 3e-3
+    box_learning_rate: float = 2e-3
 
 
-def warm_up(
+def warm_up(network: DetectorNetwork, dataset: DetectionDataset, settings: WarmUp, seed: int) -> None:
+    """Teach a network with a small backbone to tell known things: cut out, then by their boxes."""
+    assert isinstance(network.body, TinyBody)
+    known = network.config.known
+    warm_up_body(network.body, network.normalised, dataset, known, settings, seed)
+    views = Views(mosaic=1.0, grids=(2, 3, 4))
+    size, count = settings.box_batch, settings.box_iterations
+    batches = Batches(dataset, known, views=views, size=size, count=count, seed=seed + 100)
+    warm_up_boxes(network, batches, settings.box_learning_rate, seed)
+
+
+def warm_up_body(
     body: TinyBody,
     normalise: Callable[[Tensor], Tensor],
     dataset: DetectionDataset,
@@ -43,7 +63,7 @@ def warm_up(
     seed: int,
     progress: Callable[[int], None] = lambda done: None,
 ) -> float:
-    """Teach a backbone to tell known things.
+    """Teach a backbone to tell known things that are cut out.
 
     Args:
         body: Changed.
@@ -87,6 +107,54 @@ def warm_up(
         right.append(float((logits.argmax(dim=1) == truth).float().mean()))
         progress(done + 1)
     return float(np.mean(right[-max(len(right) // 10, 1) :]))
+
+
+def warm_up_boxes(
+    network: DetectorNetwork,
+    batches: Batches,
+    rate: float,
+    seed: int,
+    progress: Callable[[int, float], None] = lambda done, loss: None,
+) -> None:
+    """Teach backbone and box head on boxes around known things, without proposals.
+
+    Args:
+        network: Its proposal network is not changed.
+        batches: Views of many known things.
+        rate: Learning rate at its highest.
+        seed: Of the boxes.
+        progress: Told how many batches are done, and the loss.
+    """
+    parameters = [*network.body.parameters(), *network.rois.parameters()]
+    optimiser = torch.optim.AdamW(parameters, rate, weight_decay=0.03)
+    samples, network.rois.samples = network.rois.samples, _SAMPLES
+    device = next(network.parameters()).device
+    network.train()
+    with torch.random.fork_rng():
+        torch.manual_seed(seed)
+        for done in range(len(batches)):
+            for group in optimiser.param_groups:
+                group["lr"] = rate * _rate(done, len(batches))
+            images, targets = batches[done]
+            images, targets = images.to(device), [each.to(device) for each in targets]
+            features = network.body(network.normalised(images.contiguous(memory_format=torch.channels_last)))
+            sizes = [(images.shape[2], images.shape[3])] * len(images)
+            near = [clip_boxes_to_image(_jittered(each.boxes), sizes[0]) for each in targets]
+            loss = torch.stack(list(network.rois.learn(features, near, targets, sizes).losses.values())).sum()
+            loss.backward()
+            nn.utils.clip_grad_norm_(parameters, 5.0)
+            optimiser.step()
+            optimiser.zero_grad(set_to_none=True)
+            progress(done + 1, loss.item())
+    network.rois.samples = samples
+
+
+def _jittered(boxes: Tensor, copies: int = 6, most: float = 0.3) -> Tensor:
+    """Return copies of boxes with each edge moved by up to a share of the box's side."""
+    many = boxes.repeat(copies, 1)
+    sides = (many[:, 2:] - many[:, :2]).repeat(1, 2)
+    moved = many + (torch.rand_like(many) * 2 - 1) * most * sides
+    return moved[((moved[:, 2:] - moved[:, :2]) > 1).all(dim=1)]
 
 
 def _rate(done: int, iterations: int) -> float:

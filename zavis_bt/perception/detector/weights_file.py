@@ -25,6 +25,7 @@ def save_detector(network: DetectorNetwork, path: Path, facts: Mapping[str, obje
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.part")
     save_file(tensors, part, header)
+    part.chmod(0o644)  # the library makes files that nobody else may read
     os.replace(part, path)
 
 
