@@ -1,15 +1,18 @@
 """Measure how often a name leads to the right box, end to end, and how long a frame takes.
 
-    python -m benchmarks.name_to_box DATA [--detector FILE] [--clip MODEL] [--images 500] [--out FILE.json]
+    python -m benchmarks.name_to_box DATA [--detector FILE] [--clip MODEL] [--widths 160 320] [--images 500]
 
 DATA is a labelled data set (zavis sim frames). For every category in an image, and every colour and category, the
 boxes of the detector are matched with that name; the best one is right if its IoU with a thing of that name is above
-0.5. The rows tell whose fault the rest is:
+0.5. The columns tell whose fault the rest is:
 
-    boxes a mission matches   unknown ones, and known ones whose class the name speaks of
-    all boxes                 of whatever label
-    annotated boxes           the matcher alone
-    detector alone            whether any box at all is right
+    best match   of the boxes that a mission would match: unknown ones, those whose class the detector is not sure of,
+                 and those whose class the name speaks of
+    with score   of the same boxes the best by m / T + W ln s: matching score m over the model's temperature T, and the
+                 detector's score s, which says how well a box fits its thing; a part of a mug looks like a mug, too
+    all boxes    the same of all boxes, whatever their label
+    annotated    best match of the annotated boxes: the matcher alone
+    detector     whether any box at all is right: the detector alone
 """
 
 from __future__ import annotations
@@ -27,16 +30,19 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from zavis_bt.perception.calibration import Thresholds
 from zavis_bt.perception.clip import ClipMatcher, ClipModel
 from zavis_bt.perception.datasets import DetectionDataset, open_dataset
 from zavis_bt.perception.detector import NeuralDetector
 from zavis_bt.perception.evaluation import NameRate, NameResult, Query, judge_answers, queries_of
+from zavis_bt.perception.looking import frame_of
 from zavis_bt.perception.models import find_weights
 from zavis_bt.perception.naming import may_name
 from zavis_bt.perception.neural import find_clip
-from zavis_bt.types import UNKNOWN_CLASS, Box, Detection
+from zavis_bt.perception.several_scales import SeveralScales
+from zavis_bt.types import Box, Detection
 
-ROWS = ("boxes a mission matches", "all boxes", "annotated boxes", "detector alone")
+ROWS = ("best match", "with score", "all boxes", "annotated", "detector")
 SMALL_FRAME = 160  # width of the frames that are timed [px]
 WARM_UP = 5  # frames
 
@@ -52,22 +58,24 @@ class Answers:
 def main() -> None:
     options = parsed()
     dataset = open_dataset(options.data)
-    detector = NeuralDetector.load(find_weights(options.detector))
+    weights = find_weights(options.detector)
+    detectors = [loaded(weights, width, options) for width in options.widths]
     architecture, pretrained, _ = find_clip(options.clip)
     matcher = ClipMatcher(ClipModel.load(architecture, pretrained))
     torch.set_num_threads(options.threads)
     indices = np.linspace(0, len(dataset) - 1, min(options.images, len(dataset))).round().astype(int).tolist()
     answers = Answers()
     for index in indices:
-        ask(answers, dataset, index, detector, matcher, options.least_score)
+        ask(answers, dataset, index, SeveralScales(detectors), matcher, options)
     results = {row: judge_answers(answers.queries, boxes) for row, boxes in answers.boxes.items()}
     note = " (rendered pixels)" if dataset.rendered else ""
     print(f"{dataset.name}: {len(indices)} images, {len(answers.queries)} names{note}\n")
     print_results(results)
-    times = {threads: timed(dataset, indices[: options.timed], detector, matcher, threads) for threads in (1, 2)}
+    times = {threads: timed(dataset, indices[: options.timed], detectors[0], matcher, threads) for threads in (1, 2)}
     print_times(times)
     if options.out is not None:
-        told = {"data": dataset.name, "rendered": dataset.rendered, "detector": options.detector, "clip": options.clip}
+        told = {"data": dataset.name, "rendered": dataset.rendered, "widths": options.widths}
+        told |= {"detector": options.detector, "clip": options.clip, "weight": options.weight}
         rates = {row: asdict(result) for row, result in results.items()}
         options.out.write_text(json.dumps({**told, "names": rates, "milliseconds": times}, indent=1))
 
@@ -78,41 +86,62 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--detector", default="zavis-tiny-detector")
     parser.add_argument("--clip", default="zavis-tiny")
     parser.add_argument("--images", type=int, default=500, help="at even distances")
-    parser.add_argument("--least-score", type=float, default=0.0, help="of the detector's boxes")
+    parser.add_argument("--widths", type=int, nargs="+", default=[160, 320], help="the detector looks at, joined [px]")
+    parser.add_argument("--unknown-score", type=float, help="least score of unknown things; the file's if not given")
+    parser.add_argument("--unknown-nms", type=float, help="IoU above which of two unknown boxes the worse goes")
+    parser.add_argument("--known", type=float, default=Thresholds().known, help="sure of a class from this score")
+    parser.add_argument("--weight", type=float, default=6.0, help="W, of the detector's score")
     parser.add_argument("--timed", type=int, default=100, help="frames of 160×120")
     parser.add_argument("--threads", type=int, default=1, help="while names are judged")
     parser.add_argument("--out", type=Path)
     return parser.parse_args()
 
 
+def loaded(weights: Path, width: int, options: argparse.Namespace) -> NeuralDetector:
+    detector = NeuralDetector.load(weights, width=width)
+    changes = {"unknown_score": options.unknown_score, "unknown_nms": options.unknown_nms}
+    wanted = {name: value for name, value in changes.items() if value is not None}
+    detector.network.config = detector.network.config.with_choice(**wanted)
+    return detector
+
+
 def ask(
     answers: Answers,
     dataset: DetectionDataset,
     index: int,
-    detector: NeuralDetector,
+    detector: SeveralScales,
     matcher: ClipMatcher,
-    least_score: float,
+    options: argparse.Namespace,
 ) -> None:
     """Answer all queries of an image."""
     queries = queries_of(dataset, [index])
     if not queries:
         return
     rgb = dataset.image(index)
-    found = [each for each in detector.detect_image(rgb) if each.score >= least_score]
+    found = detector.detect(frame_of(rgb))
     boxes = [each.box for each in found]
     annotated = [each.box for each in dataset.annotations(index)]
     texts = [query.text for query in queries]
     scores, exact = (matcher.match_image(rgb, as_array(each), texts) for each in (boxes, annotated))
+    trust = options.weight * np.log([max(each.score, 1e-6) for each in found])
+    thresholds = Thresholds(known=options.known)
     for k, query in enumerate(queries):
         answers.queries.append(query)
-        answers.boxes[ROWS[0]].append(best(boxes, scores[:, k], [is_matched(each, query.text) for each in found]))
-        answers.boxes[ROWS[1]].append(best(boxes, scores[:, k]))
-        answers.boxes[ROWS[2]].append(best(annotated, exact[:, k]))
-        answers.boxes[ROWS[3]].append(next((box for box in boxes if query.verdict(box)), None))
+        matched = [is_matched(each, query.text, thresholds) for each in found]
+        weighed = scores[:, k] * matcher.model.logit_scale / 100 + trust
+        chosen = (
+            best(boxes, scores[:, k], matched),
+            best(boxes, weighed, matched),
+            best(boxes, weighed),
+            best(annotated, exact[:, k]),
+            next((box for box in boxes if query.verdict(box)), None),
+        )
+        for row, box in zip(ROWS, chosen, strict=True):
+            answers.boxes[row].append(box)
 
 
-def is_matched(found: Detection, text: str) -> bool:
-    return found.label == UNKNOWN_CLASS or may_name(text, found.label)
+def is_matched(found: Detection, text: str, thresholds: Thresholds) -> bool:
+    return thresholds.is_unknown(found.label, found.score) or may_name(text, found.label)
 
 
 def best(boxes: Sequence[Box], scores: NDArray[np.floating], mask: Sequence[bool] | None = None) -> Box | None:
@@ -154,9 +183,9 @@ def print_results(results: dict[str, NameResult]) -> None:
     def rates(result: NameResult) -> Iterator[NameRate]:
         yield from (result.all, result.categories, result.coloured, *result.by_size)
 
-    print(f"{'right boxes':24}{'asked':>7}" + "".join(f"{row:>25}" for row in results))
+    print(f"{'right boxes':24}{'asked':>7}" + "".join(f"{row:>12}" for row in results))
     for rows in zip(*map(rates, results.values()), strict=True):
-        print(f"{rows[0].name:24}{rows[0].asked:7}" + "".join(f"{rate.right:25.3f}" for rate in rows))
+        print(f"{rows[0].name:24}{rows[0].asked:7}" + "".join(f"{rate.right:12.3f}" for rate in rows))
 
 
 def print_times(times: dict[int, dict[str, float]]) -> None:
