@@ -27,12 +27,13 @@ from zavis_bt.perception.detector import (
     Training,
     TrainingLog,
     TrainingSettings,
+    Views,
     save_detector,
 )
 from zavis_bt.perception.detector.building import DEFAULT_KNOWN, build_network
 from zavis_bt.perception.detector.decoded import Decoded
 from zavis_bt.perception.detector.pseudo_labels import Labelling
-from zavis_bt.perception.detector.warm_up import WarmUp, warm_up
+from zavis_bt.perception.detector.warm_up import WarmUp
 from zavis_bt.perception.evaluation import OpenSetResult, Truth, collect, judge, truths_of
 from zavis_bt.perception.models import find_weights
 
@@ -48,9 +49,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--methods", default=",".join(NAMES))
     parser.add_argument("--seeds", default="0,1,2")
-    parser.add_argument("--iterations", type=int, default=2000)
-    parser.add_argument("--batch", type=int, default=8)
+    parser.add_argument("--iterations", type=int, default=400, help="of each row and seed")
+    parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--warm-up", type=int, default=2200, help="iterations of each part, once for all rows")
+    parser.add_argument("--collages", type=int, default=450, help="iterations of the beginning, once for all rows")
     parser.add_argument("--width", type=int, default=320, help="of the test images [px]")
     parser.add_argument("--images", type=int, help="of the test, from the first; all if not given")
     parser.add_argument("--threads", type=int, default=1)
@@ -72,31 +74,47 @@ def main() -> None:
 
 def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given: argparse.Namespace) -> NeuralDetector:
     """Train, or go on training, one detector."""
-    folder.mkdir(exist_ok=True)
     config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
-    settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed)
     network = build_network(config, seed)
-    begin(network, data, given.out / "warm-up.pt", given.warm_up)
-    training = Training(network, data, settings, labelling(method))
+    begin(network, data, given)
+    settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed, collages=0.35, views=Views(large=0.25))
+    finish(Training(network, data, settings, labelling(method)), folder)
+    facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed, "batch": given.batch}
+    facts |= {"iterations": given.iterations, "collages": given.collages, "warm_up": given.warm_up}
+    save_detector(network, folder / "detector.safetensors", facts)
+    return NeuralDetector.load(folder / "detector.safetensors")
+
+
+def begin(network: DetectorNetwork, data: DetectionDataset, given: argparse.Namespace) -> None:
+    """Give the network what all rows begin with, as usual detectors do with ImageNet's backbone.
+
+    That is a Faster R-CNN trained on known things alone: cut out, in boxes, then in collages. Only the layer of the
+    classes is each row's own from the start.
+    """
+    file = given.out / "begin.pt"
+    if not file.exists():
+        taught = build_network(DetectorConfig(DEFAULT_KNOWN, "faster_rcnn"), 0)
+        settings = TrainingSettings(
+            given.collages, given.batch, 2e-3, collages=0.85, warm_up=WarmUp(given.warm_up, given.warm_up)
+        )
+        finish(Training(taught, data, settings), given.out / "begin")
+        torch.save(taught.state_dict(), file)
+    own = network.state_dict()
+    shared = {
+        name: value
+        for name, value in torch.load(file, weights_only=True).items()
+        if name in own and own[name].shape == value.shape and not name.startswith("rois.classes")
+    }
+    network.load_state_dict(own | shared)
+
+
+def finish(training: Training, folder: Path) -> None:
+    """Run a training to its end, from its last checkpoint if there is one."""
+    folder.mkdir(exist_ok=True)
     if (folder / "checkpoint.pt").exists():
         training.resume(Checkpoint.load(folder))
     with TrainingLog(folder) as log:
         training.run(log, lambda state: state.save(folder))
-    facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed}
-    facts |= {"iterations": given.iterations, "batch": given.batch, "warm_up": given.warm_up}
-    save_detector(training.network, folder / "detector.safetensors", facts)
-    return NeuralDetector.load(folder / "detector.safetensors")
-
-
-def begin(network: DetectorNetwork, data: DetectionDataset, file: Path, iterations: int) -> None:
-    """Give the network the backbone and box head that all rows begin with, as usual detectors do with ImageNet's."""
-    if not file.exists():
-        taught = build_network(DetectorConfig(DEFAULT_KNOWN, "faster_rcnn"), 0)
-        warm_up(taught, data, WarmUp(iterations, iterations), seed=0)
-        torch.save({"body": taught.body.state_dict(), "head": taught.rois.head.state_dict()}, file)
-    weights = torch.load(file, weights_only=True)
-    network.body.load_state_dict(weights["body"])
-    network.rois.head.load_state_dict(weights["head"])
 
 
 def labelling(method: str) -> Labelling | None:

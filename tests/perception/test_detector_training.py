@@ -76,7 +76,7 @@ def test_the_methods_to_compare_with_learn(tmp_path: Path, method: str) -> None:
 
 def test_an_interrupted_training_goes_on_exactly(tmp_path: Path) -> None:
     data = write_coco_scenes(tmp_path / "data")
-    settings = replace(SHORT, iterations=6, save_every=3)
+    settings = replace(SHORT, iterations=6, save_every=3, collages_first=0.3, collages=0.3)
     whole, first = (training(data, settings=settings) for _ in range(2))
     run(whole, tmp_path / "whole")
 

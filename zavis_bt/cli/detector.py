@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _CLIP = "zavis-tiny"
 _WEIGHTS_FILE = "detector.safetensors"
+_COLLAGES_FIRST, _COLLAGES = 0.45, 0.35  # shares of the iterations: at the start, and of the rest
 
 app = typer.Typer(help="Train the open-set detector, judge it, write it for use.", no_args_is_help=True)
 
@@ -43,6 +44,10 @@ def train(
     device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
     workers: Annotated[int, typer.Option("--workers", "-j", min=0, help="Processes that read images.")] = 0,
     width: Annotated[int | None, typer.Option(min=32, help="Of what is learnt from [px]; by the backbone.")] = None,
+    collages: Annotated[
+        bool | None,
+        typer.Option("--collages/--no-collages", help="Begin with collages of known things; tiny backbones do."),
+    ] = None,
     warm_up: Annotated[
         int, typer.Option(min=0, help="Iterations in which a tiny detector first learns to tell things, twice.")
     ] = 0,
@@ -61,10 +66,18 @@ def train(
         raise InputError(f"--out: {out} holds a training (go on with --resume, or name a new folder)")
     before = Checkpoint.load(out) if resume else None
     network = build_network(config, seed, weights)
-    views = Views() if backbone == "tiny" else Views(width or 800, zoom=1.5, large=0.0)
     peak = rate or (2e-3 if backbone == "tiny" else 1e-4)
+    crowded = backbone == "tiny" if collages is None else collages
     settings = TrainingSettings(
-        iterations, batch, peak, seed, workers, views=views, warm_up=WarmUp(warm_up, warm_up) if warm_up else None
+        iterations,
+        batch,
+        peak,
+        seed,
+        workers,
+        views=Views() if backbone == "tiny" else Views(width or 800, zoom=1.5, large=0.0),
+        collages_first=_COLLAGES_FIRST if crowded else 0.0,
+        collages=_COLLAGES if crowded else 0.0,
+        warm_up=WarmUp(warm_up, warm_up) if warm_up else None,
     )
     training = Training(network, images, settings, _labelling(method, clip, device), device)
     if before is not None:

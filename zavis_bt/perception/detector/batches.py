@@ -28,7 +28,7 @@ class Views:
     """Images are drawn at up to so many times the size at which they fill the view."""
     large: float = 0.2
     """Share of the iterations whose views are twice as wide, of a quarter as many images."""
-    mosaic: float = 0.5
+    mosaic: float = 0.0
     """Share of the views that are put together of windows around known things."""
     grids: tuple[int, ...] = (2, 3)
     """So many windows across and down, drawn from these."""

@@ -20,6 +20,7 @@ _READ_WIDTH = 320  # of the images they are cut from [px]
 _MARGIN = 0.45  # of the box's longer side, kept round it on each side
 _LEAST_VISIBLE = 0.65  # share of a thing that is in sight where it is cut out
 _LEAST_SIDE = 5.0  # of a box in a collage [px]
+_MOST = 20_000  # patches; they are kept in memory
 
 
 class Collages:
@@ -50,6 +51,7 @@ class Collages:
         return len(self._labels)
 
     def __getitem__(self, number: int) -> tuple[Tensor, list[Target]]:
+        """Return images (n, 3, h, w) from 0 to 1 and what they show."""
         rng = np.random.default_rng([self._seed, 7, number])
         made = [self._collage(rng) for _ in range(self._size)]
         images = torch.from_numpy(np.stack([image for image, _ in made])).permute(0, 3, 1, 2)
@@ -99,11 +101,15 @@ def _cut(
     dataset: DetectionDataset, numbers: dict[str, int]
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int64]]:
     """Return patches (n, side, side, 3), the things' boxes in them (n, 4) and their labels (n,)."""
-    patches, boxes, labels = [], [], []
+    patches: list[NDArray[np.uint8]] = []
+    boxes: list[tuple[float, float, float, float]] = []
+    labels: list[int] = []
     for index in range(len(dataset)):
         wanted = [thing for thing in dataset.annotations(index) if _is_good(thing, numbers)]
         if not wanted:
             continue
+        if len(labels) >= _MOST:
+            break
         image = dataset.image(index, width=_READ_WIDTH)
         scale = image.shape[1] / dataset.size(index)[0]
         for thing in wanted:

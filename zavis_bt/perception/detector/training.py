@@ -16,6 +16,8 @@ from zavis_bt.perception.datasets import DetectionDataset
 from zavis_bt.perception.detector.backbones import TinyBody
 from zavis_bt.perception.detector.batches import Batches, Views
 from zavis_bt.perception.detector.checkpoint import Checkpoint
+from zavis_bt.perception.detector.collages import Collages
+from zavis_bt.perception.detector.course import Course
 from zavis_bt.perception.detector.fitting import fit
 from zavis_bt.perception.detector.network import DetectorNetwork
 from zavis_bt.perception.detector.proposals import Target
@@ -25,9 +27,9 @@ from zavis_bt.perception.detector.warm_up import WarmUp, warm_up
 
 _FIT_BATCHES = 40  # of the training's, for the distributions that tell unknown things
 _CLIP_NORM = 5.0
-_WEIGHT_DECAY = 0.02
+_WEIGHT_DECAY = 0.05
 
-Batch = tuple[Tensor, list[Target]]
+Batch = tuple[Tensor, list[Target], bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +48,10 @@ class TrainingSettings:
     save_every: int = 200
     """Iterations between checkpoints."""
     views: Views = field(default_factory=Views)
+    collages_first: float = 0.0
+    """Share of the iterations, at the start, that see collages of known things only."""
+    collages: float = 0.0
+    """Share of collages after that; without labels of unknown things, of which they show few."""
     warm_up: WarmUp | None = None
     """What a small backbone learns before; nothing if None."""
 
@@ -69,8 +75,12 @@ class Training:
         self.schedule = torch.optim.lr_scheduler.LambdaLR(self.optimiser, self._rate)
         self._scaler = torch.amp.GradScaler(device, enabled=device.startswith("cuda"))
         self.done = 0
-        views, size, count = settings.views, settings.batch, settings.iterations
-        self._batches = Batches(dataset, network.config.known, views=views, size=size, count=count, seed=settings.seed)
+        known, seed = network.config.known, settings.seed
+        width, size, count = settings.views.width, settings.batch, settings.iterations
+        self._views = Batches(dataset, known, views=settings.views, size=size, count=count, seed=seed)
+        first, share = round(settings.collages_first * count), settings.collages
+        collages = Collages(dataset, known, width=width, size=size, seed=seed) if first or share else None
+        self._batches = Course(self._views, collages, first=first, share=share, seed=seed)
 
     def run(
         self, log: TrainingLog, save: Callable[[Checkpoint], None], progress: Callable[[int], None] = lambda done: None
@@ -94,9 +104,10 @@ class Training:
             progress(self.done)
             if self.done % self.settings.save_every == 0 and self.done < self.settings.iterations:
                 save(self.state())
-        count = min(_FIT_BATCHES, len(self._batches))
+        count = min(_FIT_BATCHES, len(self._views))
         with _repeatable(self.settings.seed):
-            fit(self.network, (self._moved(self._batches[k]) for k in range(count)), self._labelling)
+            batches = (self._moved((*self._views[k], False))[:2] for k in range(count))
+            fit(self.network, batches, self._labelling)
         save(self.state())
 
     def _warm_up(self, settings: WarmUp) -> None:
@@ -136,11 +147,12 @@ class Training:
         self.done = state.done
 
     def _step(self, batch: Batch) -> dict[str, float]:
-        images, targets = self._moved(batch)
+        images, targets, is_collage = self._moved(batch)
+        labelling = None if is_collage else self._labelling
         progress = self.done / self.settings.iterations
         mixed = torch.autocast("cuda") if self._device.startswith("cuda") else nullcontext()
         with _repeatable(self.settings.seed, self.done), mixed:
-            losses = self.network.learn(images, targets, self._labelling, progress).losses
+            losses = self.network.learn(images, targets, labelling, progress).losses
             total = torch.stack(list(losses.values())).sum()
         self._check(total)
         self.optimiser.zero_grad(set_to_none=True)
@@ -171,9 +183,9 @@ class Training:
         )
 
     def _moved(self, batch: Batch) -> Batch:
-        images, targets = batch
+        images, targets, is_collage = batch
         here = images.to(self._device).contiguous(memory_format=torch.channels_last)
-        return here, [target.to(self._device) for target in targets]
+        return here, [target.to(self._device) for target in targets], is_collage
 
     def _rate(self, done: int) -> float:
         rise = min(100, max(self.settings.iterations // 10, 1))
