@@ -36,7 +36,7 @@ def test_train_and_judge(tmp_path: Path) -> None:
     assert judged.exit_code == 0, judged.exception
     content = json.loads(judged.output)
     assert content["trained_on"] == "rendered pixels"
-    assert 0 <= content["figures"]["category"] <= 1
+    assert 0 <= content["figures"]["category, all crops"] <= 1
     printed = matcher("eval", "zavis-tiny", data)
     assert "(trained on: rendered pixels)" in printed.output
 

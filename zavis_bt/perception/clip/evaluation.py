@@ -14,8 +14,8 @@ from zavis_bt.perception.clip.model import ClipModel
 from zavis_bt.perception.clip.prompts import BACKGROUND_PROMPTS, OBJECT_PROMPTS
 from zavis_bt.perception.clip.vocabulary import Vocabulary
 
-_SMALL = 24.0  # crops of a shorter side below are reported apart [px at 640 px width]
-_CLEAR = 0.8  # and so are those of which less is in sight
+_LARGE = 24.0  # crops of a longer shorter side are reported apart [px at 640 px width]
+_CLEAR_SIDE, _CLEAR_SIGHT = 16.0, 0.6  # what a crop shown clearly has at least [px at 640 px width, share in sight]
 _ENOUGH = 3  # crops that a "colour noun" query must have to count
 
 Scores = NDArray[np.float32]
@@ -47,10 +47,11 @@ class MatcherEvaluation:
         self._names = [name for name in self._shown if name in trained] or self._shown
         self._colours = sorted(set(gallery.colours.tolist()) - {""})
         self._known = np.isin(gallery.categories, self._names)
+        self._clear = (gallery.sides >= _CLEAR_SIDE) & (gallery.visible >= _CLEAR_SIGHT)
 
     def report(self, vocabulary: Vocabulary) -> MatcherReport:
         """Return all figures."""
-        figures = self.categories() | self.never_drawn()
+        figures = self.categories(vocabulary.twins) | self.never_drawn()
         if self._colours:
             figures |= self.pairs() | self.queries()
         figures |= self.synonyms(vocabulary.tested_synonyms, vocabulary) | self.objectness()
@@ -62,59 +63,70 @@ class MatcherEvaluation:
         scores: Scores = (100 * vectors @ self._model.encode_texts(texts).T).cpu().numpy()
         return scores
 
-    def categories(self) -> dict[str, float]:
+    def categories(self, twins: Sequence[Sequence[str]] = ()) -> dict[str, float]:
         """Return the share of crops whose category's name scores best among those trained, by size and sight."""
         gallery, known = self._gallery, self._known
-        right = self._best(self._names, known) == gallery.categories[known]
-        small, clear = gallery.sides[known] < _SMALL, gallery.visible[known] >= _CLEAR
+        given, true = self._best(self._names, known), gallery.categories[known]
+        right, clear, large = given == true, self._clear[known], gallery.sides[known] >= _LARGE
+        like = {name: names[0] for names in twins for name in names}
+        alike = np.array([like.get(a, a) == like.get(b, b) for a, b in zip(given, true, strict=True)], dtype=bool)
+        five = np.argsort(-self.scores(self._names, known), axis=1)[:, :5]
+        among = (np.asarray(self._names)[five] == true[:, None]).any(axis=1)
         return {
-            "category": _mean(right),
-            f"category, {_SMALL:g} px and more": _mean(right[~small]),
-            f"category, under {_SMALL:g} px": _mean(right[small]),
-            f"category, {_CLEAR:.0%} in sight, {_SMALL:g} px and more": _mean(right[clear & ~small]),
+            "category, all crops": _mean(right),
+            "category, clear crops": _mean(right[clear]),
+            f"category, clear crops of {_LARGE:g} px and more": _mean(right[clear & large]),
+            f"category, clear crops under {_LARGE:g} px": _mean(right[clear & ~large]),
+            "category, clear crops, twins as one": _mean(alike[clear]),
+            "category, clear crops, among the best five": _mean(among[clear]),
         }
 
     def never_drawn(self) -> dict[str, float]:
         """Return the same for categories that training never showed, among all names."""
-        never = (self._gallery.categories != "") & ~self._known
+        never = (self._gallery.categories != "") & ~self._known & self._clear
         right = self._best(self._shown, never) == self._gallery.categories[never]
-        return {"category, never drawn in training": _mean(right)}
+        return {"category, clear crops of categories never drawn in training": _mean(right)}
 
     def pairs(self) -> dict[str, float]:
-        """Return how well category and colour are told together, over pairs that training left out."""
+        """Return how well category and colour are told, together and apart, over pairs that training left out."""
         gallery = self._gallery
         held = np.array([is_held_out(*pair) for pair in zip(gallery.colours, gallery.categories, strict=True)])
-        held &= self._known & (gallery.colours != "")
+        held &= self._known & self._clear & (gallery.colours != "")
+        if not held.any():
+            return {}
         texts = [f"{colour} {name}" for colour in self._colours for name in self._names]
         scores = self.scores(texts, held).reshape(-1, len(self._colours), len(self._names))
-        if not len(scores):
-            return {}
         colour = np.searchsorted(self._colours, gallery.colours[held])
         name = np.searchsorted(self._names, gallery.categories[held])
         best = scores.reshape(len(scores), -1).argmax(axis=1)
-        own = scores[np.arange(len(scores)), :, name]
+        rows = np.arange(len(scores))
         return {
-            "held-out pair, colour and category": _mean(best == colour * len(self._names) + name),
-            "held-out pair, colour of the known category": _mean(own.argmax(axis=1) == colour),
+            "held-out pair, clear crops": _mean(best == colour * len(self._names) + name),
+            "held-out pair, colour of the known category": _mean(scores[rows, :, name].argmax(axis=1) == colour),
+            "held-out pair, category of the known colour": _mean(scores[rows, colour].argmax(axis=1) == name),
         }
 
     def queries(self) -> dict[str, float]:
-        """Return the average precision of "colour noun" queries over the whole gallery, background included."""
-        gallery = self._gallery
-        pairs = Counter(
-            zip(gallery.colours[self._known].tolist(), gallery.categories[self._known].tolist(), strict=True)
-        )
-        asked = [pair for pair, count in sorted(pairs.items()) if count >= _ENOUGH and pair[0]]
+        """Return the average precision of "colour noun" queries over all crops, and over clear crops and background."""
+        everything = np.ones(len(self._known), dtype=bool)
+        clear = self._clear | (self._gallery.categories == "")
+        return self._queries(everything, "all crops") | self._queries(clear, "clear crops")
+
+    def _queries(self, rows: NDArray[np.bool_], which: str) -> dict[str, float]:
+        names, colours = self._gallery.categories[rows], self._gallery.colours[rows]
+        pairs = Counter(zip(colours.tolist(), names.tolist(), strict=True))
+        known = {*self._names}
+        asked = [pair for pair, n in sorted(pairs.items()) if n >= _ENOUGH and pair[0] and pair[1] in known]
         if not asked:
             return {}
-        scores = self.scores([" ".join(pair) for pair in asked])
+        scores = self.scores([" ".join(pair) for pair in asked], rows)
         precisions = {
-            pair: average_precision(column, (gallery.colours == pair[0]) & (gallery.categories == pair[1]))
+            pair: average_precision(column, (colours == pair[0]) & (names == pair[1]))
             for pair, column in zip(asked, scores.T, strict=True)
         }
-        figures = {"mean AP of colour-noun queries": float(np.mean([*precisions.values()]))}
+        figures = {f"mean AP of colour-noun queries, {which}": float(np.mean([*precisions.values()]))}
         wallet = precisions.get(("red", "wallet"))
-        return figures | ({} if wallet is None else {"AP of red wallet": wallet})
+        return figures | ({} if wallet is None else {f"AP of red wallet, {which}": wallet})
 
     def synonyms(self, words: Sequence[str], vocabulary: Vocabulary) -> dict[str, float]:
         """Return the mean, over synonyms, of the share of crops named right when one takes its category's place."""
@@ -122,10 +134,10 @@ class MatcherEvaluation:
         for word in words:
             name = vocabulary.category_of(word)
             if name in self._names:
-                rows = self._gallery.categories == name
+                rows = (self._gallery.categories == name) & self._clear
                 texts = [word if other == name else other for other in self._names]
                 shares.append(_mean(self._best(texts, rows) == word))
-        return {f"{len(shares)} synonyms": float(np.mean(shares))} if shares else {}
+        return {f"{len(shares)} synonyms, clear crops": float(np.nanmean(shares))} if np.isfinite(shares).any() else {}
 
     def objectness(self) -> dict[str, float]:
         """Return how o(B) tells things from background: the area under the ROC curve, and the shares above 0.9."""
@@ -143,8 +155,9 @@ class MatcherEvaluation:
 
     def confusions(self, most: int = 15) -> list[tuple[str, str, float]]:
         """Return the most frequent mistakes among trained categories."""
-        true = self._gallery.categories[self._known].tolist()
-        given = self._best(self._names, self._known).tolist()
+        rows = self._known & self._clear
+        true = self._gallery.categories[rows].tolist()
+        given = self._best(self._names, rows).tolist()
         totals = Counter(true)
         wrong = Counter(pair for pair in zip(true, given, strict=True) if pair[0] != pair[1])
         shares = [(a, b, count / totals[a]) for (a, b), count in wrong.items()]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,10 +13,11 @@ from typing import Any
 
 import open_clip
 from open_clip.factory import get_model_config, load_checkpoint
-from torch import Tensor, nn
+from torch import nn
 
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.perception.clip.crops import Preprocessing
+from zavis_bt.perception.clip.tokens import KnownWords, Tokenizer
 from zavis_bt.perception.clip.word_tower import WORDS, WordTower
 
 CONFIG = "open_clip_config.json"
@@ -28,8 +29,6 @@ SHIPPED = {"zavis-tiny": Path(__file__).parents[1] / "weights" / "zavis_tiny_cli
 
 LIT = "-lit"
 """Ends the names of models that read texts by static word vectors: ``zavis-tiny-lit``, ``FOLDER-lit``."""
-
-Tokenizer = Callable[[list[str]], Tensor]
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +151,15 @@ def _build(model: str, pretrained: str | None, *, where: str, required: bool) ->
             tokenizer = open_clip.get_tokenizer(model)
     except Exception as error:  # whatever open_clip, torch, safetensors and the hub raise for bad files and networks
         raise InputError(f"{where}: cannot be loaded: {_first_line(error)}") from error
-    return Parts(network.eval(), tokenizer, _preprocessing(network))
+    return Parts(network.eval(), _knowing(tokenizer, network), _preprocessing(network))
+
+
+def _knowing(tokenizer: Tokenizer, network: nn.Module) -> Tokenizer:
+    """Return the tokenizer, without words that the network never learnt if there are such."""
+    embedding = getattr(network, "token_embedding", None)
+    if not isinstance(embedding, nn.Embedding) or bool((embedding.weight != 0).any(dim=1).all()):
+        return tokenizer
+    return KnownWords(tokenizer, embedding.weight.detach())
 
 
 def _first_line(error: BaseException) -> str:

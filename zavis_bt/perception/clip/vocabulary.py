@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -20,6 +19,7 @@ class _Document(BaseModel):
     kinds: dict[str, list[str]] = {}
     groups: dict[str, list[str]] = {}
     synonyms: dict[str, list[str]] = {}
+    twins: list[list[str]] = []
     tested_synonyms: list[str] = []
     colour_synonyms: dict[str, list[str]] = {}
 
@@ -34,6 +34,8 @@ class Vocabulary:
     """Of other words for several categories, such as ``fruit``: the categories."""
     synonyms: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Of a category: its other names."""
+    twins: tuple[tuple[str, ...], ...] = ()
+    """Categories that look much alike; evaluation also counts each set as one."""
     tested_synonyms: tuple[str, ...] = ()
     """Synonyms that evaluation asks for."""
     colour_synonyms: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -58,6 +60,7 @@ class Vocabulary:
             _frozen(document.kinds),
             _frozen(document.groups),
             _frozen(document.synonyms),
+            tuple(map(tuple, document.twins)),
             tuple(document.tested_synonyms),
             _frozen(document.colour_synonyms),
         )
@@ -65,15 +68,11 @@ class Vocabulary:
     def without(self, words: tuple[str, ...]) -> Vocabulary:
         """Return the vocabulary without some synonyms."""
         kept = {name: tuple(w for w in others if w not in words) for name, others in self.synonyms.items()}
-        return Vocabulary(self.kinds, self.groups, kept, self.tested_synonyms, self.colour_synonyms)
+        return replace(self, synonyms=kept)
 
     def category_of(self, synonym: str) -> str | None:
         """Return the category a synonym stands for."""
         return next((name for name, others in self.synonyms.items() if synonym in others), None)
-
-    def to_json(self) -> str:
-        """Return the words as a file holds them."""
-        return json.dumps({name: getattr(self, name) for name in _Document.model_fields}, indent=1)
 
 
 def _frozen(words: Mapping[str, list[str]]) -> dict[str, tuple[str, ...]]:
