@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,6 +54,7 @@ def train(
     ] = 0,
 ) -> None:
     """Train a detector on labelled images; an interrupted training goes on with --resume."""
+    check_device(device)
     from zavis_bt.cli.detector_data import open_images
     from zavis_bt.cli.detector_progress import progress_bar
     from zavis_bt.perception.detector import Checkpoint, Training, TrainingLog, TrainingSettings, Views, save_detector
@@ -60,7 +62,6 @@ def train(
     from zavis_bt.perception.detector.warm_up import WarmUp
 
     config = _config(known, method, backbone, width, pretrained=weights is not None)
-    check_device(device)
     images = open_images(data)
     if not resume and (out / "checkpoint.pt").exists():
         raise InputError(f"--out: {out} holds a training (go on with --resume, or name a new folder)")
@@ -105,13 +106,13 @@ def evaluate(
     report: Annotated[Path | None, typer.Option(help="Folder for a report with example pictures.")] = None,
 ) -> None:
     """Judge a detector: K-mAP, U-Recall, U-Precision, WI, A-OSE."""
+    check_device(device)
     from zavis_bt.cli.detector_data import open_images
     from zavis_bt.cli.detector_eval import judge_detector
     from zavis_bt.cli.detector_progress import progress_bar
     from zavis_bt.perception.detector import NeuralDetector
     from zavis_bt.perception.models import find_weights
 
-    check_device(device)
     opened = NeuralDetector.load(find_weights(detector), device=device, width=width)
     dataset = open_images(data)
     with progress_bar(min(images or len(dataset), len(dataset))) as progress:
@@ -128,6 +129,7 @@ def export(
     cdf: Annotated[float | None, typer.Option(min=0, max=1, help="Uncertainty above which a thing is unknown.")] = None,
 ) -> None:
     """Write a trained detector as one file, with the width and the thresholds that it is used with."""
+    check_device("cpu")
     from zavis_bt.perception.detector.building import export_training
 
     if out.suffix != ".safetensors":
@@ -138,11 +140,14 @@ def export(
 
 
 def check_device(device: str) -> None:
-    """Refuse devices that are not there.
+    """Refuse devices that are not there, and work without the libraries for it.
 
     Raises:
-        InputError: The device is unknown or missing.
+        InputError: The device is unknown or missing, or the extra is not installed.
     """
+    missing = [name for name in ("torch", "torchvision", "open_clip") if find_spec(name) is None]
+    if missing:
+        raise InputError(f"zavis detector: needs {missing[0]} (pip install 'zavis_bt[neural]')")
     import torch
 
     if device.partition(":")[0] not in ("cpu", "cuda"):
@@ -152,10 +157,15 @@ def check_device(device: str) -> None:
 
 
 def _config(known: str | None, method: str, backbone: str, width: int | None, *, pretrained: bool) -> DetectorConfig:
+    from zavis_bt.perception.datasets import project_name
     from zavis_bt.perception.detector import DetectorConfig
     from zavis_bt.perception.detector.building import DEFAULT_KNOWN
 
-    names = DEFAULT_KNOWN if known is None else tuple(name.strip() for name in known.split(",") if name.strip())
+    names = (
+        DEFAULT_KNOWN
+        if known is None
+        else tuple(project_name(name.strip()) for name in known.split(",") if name.strip())
+    )
     working = 320 if backbone == "tiny" else (width or 800)
     return DetectorConfig(names, method, backbone, width=working, frozen=pretrained)  # type: ignore[arg-type]  # checks
 
