@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import pickle
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -25,13 +26,14 @@ from sim.perception.matcher import what_it_shows
 from sim.scene import Scene
 from zavis_bt.bench import load_episodes
 from zavis_bt.cli.bench import _world
-from zavis_bt.perception import DEFAULT_UNKNOWN_LANDMARKS, Eyes, open_eyes
+from zavis_bt.perception import DEFAULT_UNKNOWN_LANDMARKS, Eyes, Thresholds, open_eyes
 from zavis_bt.perception.naming import key
 from zavis_bt.types import UNKNOWN_CLASS, CameraIntrinsics, CameraSpec
 
 SPEC = CameraSpec(CameraIntrinsics.from_fov(640, 480, math.radians(60)), 0.0, 0.9, 0.1, 10.0, 15.0)
 TILTS = (-0.35, 0.0, -0.6)
 FOUND = 0.4  # IoU from which a box is of an instance
+SIMULATED_THRESHOLD = 29.0
 PIXELS = SPEC.intrinsics.width * SPEC.intrinsics.height
 
 
@@ -47,8 +49,9 @@ class Sight:
     known: bool
     label: str | None
     """Of the box that found it."""
-    told: bool | None
-    """Whether its name reached the threshold."""
+    id: str
+    score: float | None
+    """Of its own name, if an `unknown` box found it."""
     named: bool | None
     """Whether the best landmark's name was right; None if it is no landmark that is told by matching."""
     edges: tuple[float, ...]
@@ -62,8 +65,10 @@ class Frame:
     """Boxes that show no instance."""
     parts: int
     """Of these, boxes inside furniture."""
-    wrong: tuple[bool, ...]
-    """Of boxes on objects and a text for something else, whether the score reached the threshold."""
+    wrong: tuple[float, ...]
+    """Scores of ``unknown`` boxes on objects and a text for something else."""
+    nothing: tuple[float, ...]
+    """Scores of ``unknown`` boxes that show nothing, with the names of what is searched."""
 
 
 def frames(path: Path, count: int, seed: int) -> Iterator[tuple[SimFrame, list[str]]]:
@@ -84,7 +89,12 @@ def frames(path: Path, count: int, seed: int) -> Iterator[tuple[SimFrame, list[s
 
 def judge(eyes: Eyes, frame: SimFrame, names: Sequence[str]) -> Frame:
     """Compare what eyes see with what is in sight."""
-    found = [one for one in eyes.detector.detect(frame) if one.score >= eyes.thresholds.detection]
+    limits = eyes.thresholds
+    found = [
+        replace(one, label=UNKNOWN_CLASS) if limits.is_unknown(one.label, one.score) else one
+        for one in eyes.detector.detect(frame)
+        if one.score >= limits.detection
+    ]
     classes = {key(name) for name in eyes.classes or ()}
     landmarks = [name for name in DEFAULT_UNKNOWN_LANDMARKS if key(name) not in classes]
     shown = [what_it_shows(one.box, frame.instances) for one in found]
@@ -97,29 +107,32 @@ def judge(eyes: Eyes, frame: SimFrame, names: Sequence[str]) -> Frame:
             if before is None or overlap > shown[before][1]:
                 best[instance.id] = k
     sights = tuple(
-        _sight(instance, best.get(instance.id), found, scores, texts, landmarks, classes, eyes)
+        _sight(instance, best.get(instance.id), found, scores, texts, landmarks, classes)
         for instance in frame.instances
     )
     on_nothing = [one.box for one, (_, overlap) in zip(found, shown, strict=True) if overlap < FOUND]
     furniture = [one.box for one in frame.instances if one.is_furniture]
     parts = sum(any(box.intersection(other) >= 0.6 * box.area for other in furniture) for box in on_nothing)
     wrong = [
-        bool(scores[k, texts.index(name)] >= eyes.thresholds.match)
+        float(scores[k, texts.index(name)])
         for k, (instance, overlap) in enumerate(shown)
         if instance is not None and overlap >= FOUND and not instance.is_furniture and found[k].label == UNKNOWN_CLASS
         for name in names
         if key(name) != key(instance.category)
     ]
-    return Frame(sights, len(on_nothing), parts, tuple(wrong))
+    empty = [k for k, (instance, _) in enumerate(shown) if instance is None and found[k].label == UNKNOWN_CLASS]
+    nothing = scores[np.ix_(empty, [texts.index(name) for name in names])].ravel().tolist()
+    return Frame(sights, len(on_nothing), parts, tuple(wrong), tuple(nothing))
 
 
-def _sight(instance: InstanceView, k, found, scores, texts, landmarks, classes, eyes: Eyes) -> Sight:
+def _sight(instance: InstanceView, k, found, scores, texts, landmarks, classes) -> Sight:
     width, height = instance.box.x1 - instance.box.x0, instance.box.y1 - instance.box.y0
-    told = named = None
+    score = named = None
     label, edges = None, ()
     if k is not None:
         box, label = found[k].box, found[k].label
-        told = bool(scores[k, texts.index(instance.category)] >= eyes.thresholds.match)
+        if label == UNKNOWN_CLASS:
+            score = float(scores[k, texts.index(instance.category)])
         edges = (
             (box.x0 - instance.box.x0) / width,
             (box.x1 - instance.box.x1) / width,
@@ -137,7 +150,8 @@ def _sight(instance: InstanceView, k, found, scores, texts, landmarks, classes, 
         instance.is_furniture,
         key(instance.category) in classes,
         label,
-        told,
+        instance.id,
+        score,
         named,
         edges,
     )
@@ -178,7 +192,45 @@ def fit_detector(seen: Sequence[Frame]) -> DetectorSettings:
     return settings_of(best.x)
 
 
-def report(seen: Sequence[Frame], fitted: DetectorSettings) -> None:
+def fit_matcher(seen: Sequence[Frame], limits: Thresholds) -> tuple[MatcherSettings, Thresholds]:
+    """Return settings and thresholds under which texts pass as often as with the eyes.
+
+    Scores are mapped by the straight line that takes the mean of wrong texts to `unrelated`, and the eyes' m_t to 29.
+    """
+    start = MatcherSettings()
+    objects = [one for frame in seen for one in frame.sights if one.score is not None and not one.furniture]
+    wrong = np.array([score for frame in seen for score in frame.wrong])
+    gain = (SIMULATED_THRESHOLD - start.unrelated) / (limits.match - wrong.mean())
+    scores = np.array([one.score for one in objects])
+    nothing = np.array([score for frame in seen for score in frame.nothing])
+    right, background = (start.unrelated + gain * (values - wrong.mean()) for values in (scores, nothing))
+    size = np.array([one.size for one in objects])
+    columns = np.stack((np.ones(len(size)), np.exp(-size / start.small_size)), axis=1)
+    (large, small), *_ = np.linalg.lstsq(columns, right, rcond=None)
+    rest = right - columns @ (large, small)
+    groups: dict[str, list[float]] = {}
+    for one, value in zip(objects, rest.tolist(), strict=True):
+        groups.setdefault(one.id, []).append(value)
+    several = [values for values in groups.values() if len(values) > 1]
+    within = np.concatenate([np.array(values) - np.mean(values) for values in several])
+    spread = gain * float(wrong.std())  # the settings have one for right and wrong texts
+    share = min(float((within**2).sum()) / max(len(within) - len(several), 1) / float(rest.var()), 1.0)
+    matcher = replace(
+        start,
+        match=round(float(large), 2),
+        background=round(float(background.mean()), 2),
+        background_spread=round(float(background.std()), 2),
+        small_loss=round(float(np.clip(-small / (large - start.unrelated), 0.0, 0.9)), 3),
+        view_spread=round(spread * math.sqrt(share), 2),
+        instance_spread=round(spread * math.sqrt(1 - share), 2),
+    )
+    landmark = start.unrelated + gain * (limits.landmark - float(wrong.mean()))
+    thresholds = Thresholds(SIMULATED_THRESHOLD, round(landmark, 2), round(gain * limits.temperature, 3))
+    print(f"right {right.mean():.2f} ± {right.std():.2f}, wrong ± {spread:.2f} on the simulated scale")
+    return matcher, thresholds
+
+
+def report(seen: Sequence[Frame], fitted: DetectorSettings, threshold: float) -> None:
     sights = [one for frame in seen for one in frame.sights]
     for kind in (False, True):
         of_kind = [one for one in sights if one.furniture == kind and one.fraction > 0.5]
@@ -190,7 +242,7 @@ def report(seen: Sequence[Frame], fitted: DetectorSettings) -> None:
             arrays = (np.array([getattr(one, name) for one in chosen]) for name in ("size", "short_side", "fraction"))
             expected = detection_chance(*arrays, kind, fitted).mean()
             found = np.mean([one.label is not None for one in chosen])
-            told = [one.told for one in chosen if one.told is not None and one.label == UNKNOWN_CLASS]
+            told = [one.score >= threshold for one in chosen if one.score is not None]
             print(
                 f"  {low:3} to {high:3} px: {found:.2f} ({expected:.2f}) of {len(chosen)}, "
                 f"told {np.mean(told) if told else math.nan:.2f} of {len(told)}"
@@ -211,7 +263,7 @@ def report(seen: Sequence[Frame], fitted: DetectorSettings) -> None:
         f"unknown as known {np.mean(strange):.3f} of {len(strange)}"
     )
     print(f"landmarks' names right {np.mean(named):.3f} of {len(named)}")
-    print(f"wrong texts above the threshold {np.mean(wrong):.5f} of {len(wrong)}")
+    print(f"wrong texts above the threshold {np.mean(np.array(wrong) >= threshold):.5f} of {len(wrong)}")
 
 
 def main() -> None:
@@ -220,13 +272,19 @@ def main() -> None:
     parser.add_argument("--eyes", default="neural")
     parser.add_argument("--count", type=int, default=400, help="frames")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--keep", type=Path, help="file for what was seen, used again if it is there")
     options = parser.parse_args()
     eyes = open_eyes(options.eyes)
-    seen = [judge(eyes, *pair) for pair in frames(options.episodes, options.count, options.seed)]
+    if options.keep and options.keep.is_file():
+        seen = pickle.loads(options.keep.read_bytes())
+    else:
+        seen = [judge(eyes, *pair) for pair in frames(options.episodes, options.count, options.seed)]
+    if options.keep:
+        options.keep.write_bytes(pickle.dumps(seen))
     fitted = fit_detector(seen)
-    report(seen, fitted)
+    report(seen, fitted, eyes.thresholds.match)
     print(fitted)
-    print(MatcherSettings())
+    print(*fit_matcher(seen, eyes.thresholds), sep="\n")
 
 
 if __name__ == "__main__":

@@ -40,7 +40,9 @@ class DetectorSettings:
     place: float = 0.5
     """Side of what counts as the same place [m]."""
     false_positives: float = 1.2
-    """Mean number of boxes a frame that show a part of a piece of furniture or nothing; at most 4."""
+    """Mean number of boxes a frame that show a part of a piece of furniture or nothing."""
+    most_false: int = 4
+    """At most so many of them in one frame."""
     parts: float = 0.6
     """Share of these that show a part of a piece of furniture, if any is in sight."""
     jitter: float = 0.05

@@ -15,7 +15,6 @@ from sim.perception.labels import Classifier
 from sim.perception.words import normal_name
 from zavis_bt.types import Box, Detection, FloatArray, RgbdFrame
 
-_MOST_FALSE = 4  # false positives in one frame
 _PART_SIZE = (0.2, 0.6)  # share of the furniture's sides that a part's box has
 _BACKGROUND_SIZE = (0.03, 0.2)  # share of the image's width that a box on nothing has
 
@@ -98,8 +97,8 @@ class SimDetector:
 
     def _imagine(self, frame: RgbdFrame, instances: Sequence[InstanceView], moment: int) -> list[Detection]:
         """Return the frame's false positives."""
-        slots = np.arange(_MOST_FALSE, dtype=np.uint64)
-        chance = self._settings.false_positives / _MOST_FALSE
+        slots = np.arange(self._settings.most_false, dtype=np.uint64)
+        chance = self._settings.false_positives / self._settings.most_false
         luck = self._draws.uniform("false", moment, slots[:, None], np.arange(8, dtype=np.uint64))
         scores = logistic(-0.9 + 0.6 * self._draws.normal("false score", moment, slots))
         furniture = [instance for instance in instances if instance.is_furniture]

@@ -7,7 +7,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from zavis_bt.cli.seeing import SIMULATED, eyes_of, needs_simulator, with_landmarks_of
+from zavis_bt.cli.seeing import eyes_of, is_simulated, needs_simulator, with_landmarks_of
 from zavis_bt.cli.simulate import Choices, human_of, open_tree
 from zavis_bt.knowledge import make_prior, word_vectors
 from zavis_bt.mission import DeviceRobot, Mission, Parts, RobotFile, Search, Task, ThreadJobs, WallClock
@@ -45,8 +45,8 @@ class RobotMission:
         from sim.oracle import NamedOracle
 
         if not has_simulated_camera(file):
-            if choices.perception == SIMULATED:
-                raise needs_simulator(f"{file.path}: --perception {SIMULATED}", "--perception neural")
+            if is_simulated(choices.perception):
+                raise needs_simulator(f"{file.path}: --perception {choices.perception}", "--perception neural")
             if choices.confirm == "oracle":
                 raise needs_simulator(f"{file.path}: --confirm oracle", "--confirm terminal")
         search = Search(target, choices.known, choices.unknown)

@@ -31,11 +31,11 @@ def show(
     """Say what eyes are made of: weights, checksums, known classes, thresholds."""
     from rich.console import Console
 
-    from zavis_bt.cli.seeing import SIMULATED, eyes_in_records
+    from zavis_bt.cli.seeing import eyes_in_records, is_simulated
     from zavis_bt.perception import open_eyes
 
-    if eyes == SIMULATED:
-        raise InputError("simulated: has no weights to show (see docs/simulated_perception.md)")
+    if is_simulated(eyes):
+        raise InputError(f"{eyes}: has no weights to show (see docs/simulated_perception.md)")
     opened = open_eyes(eyes)
     console = Console(highlight=False)
     for name, value in eyes_in_records(opened).items():

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sim.perception import DetectorSettings, MatcherSettings, SimDetector, SimMatcher
+from sim.perception import FITTED_TO_NETWORKS, DetectorSettings, MatcherSettings, SimDetector, SimMatcher
 from zavis_bt.errors import InputError
 from zavis_bt.perception import Eyes, EyesSettings, open_eyes, split_landmarks
 from zavis_bt.perception.eyes import find_eyes, is_file
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from zavis_bt.mission import Search
 
 SIMULATED = "simulated"
+FITTED = "fitted"
+"""Simulated, too, but with the errors of the networks that come along, not those of published ones."""
+_SIMULATED = (SIMULATED, FITTED)
 
 
 def check_perception(name: str) -> None:
@@ -28,14 +31,19 @@ def check_perception(name: str) -> None:
     Raises:
         InputError: There are no eyes of that name, or the file is missing or wrong.
     """
-    if name == SIMULATED:
+    if is_simulated(name):
         return
     if is_file(name):
         from zavis_bt.perception.eyes_file import read_eyes
 
         read_eyes(Path(name))
     else:
-        find_eyes(name, others=(SIMULATED,))
+        find_eyes(name, others=_SIMULATED)
+
+
+def is_simulated(name: str) -> bool:
+    """Return whether eyes look at what frames say they show, not at pixels."""
+    return name in _SIMULATED
 
 
 def eyes_of(
@@ -49,7 +57,7 @@ def eyes_of(
     """Make the eyes of a mission.
 
     Args:
-        name: ``simulated``, or what `open_eyes` takes.
+        name: ``simulated``, ``fitted``, or what `open_eyes` takes.
         known: Landmarks that simulated eyes are trained on.
         rng: Returns the generator of a consumer, for simulated eyes.
         similarity: Returns how alike two names are, for simulated eyes.
@@ -58,14 +66,14 @@ def eyes_of(
     Raises:
         InputError: There are no such eyes, or their weights cannot be had.
     """
-    if name == SIMULATED:
-        detector, matcher = DetectorSettings(), MatcherSettings()
+    if is_simulated(name):
+        detector, matcher = FITTED_TO_NETWORKS if name == FITTED else (DetectorSettings(), MatcherSettings())
         return Eyes(
             SimDetector(known, rng("detector"), detector),
             SimMatcher(similarity, rng("matcher"), matcher),
             about={"detector": asdict(detector), "matcher": asdict(matcher)},
         )
-    return open_eyes(name, EyesSettings(threads=threads), others=(SIMULATED,))
+    return open_eyes(name, EyesSettings(threads=threads), others=_SIMULATED)
 
 
 def with_landmarks_of(eyes: Eyes, search: Search) -> Search:

@@ -107,7 +107,7 @@ def with_meaning(settings: EyesSettings) -> EyesSettings:
     shipped = WEIGHTS / f"{clip}.eyes.yaml"
     if shipped.is_file():
         _, known = read_eyes(shipped)
-        widths = settings.widths or known.widths
+        widths = settings.widths or (known.widths if settings.detector in (None, known.detector) else ())
         return replace(settings, thresholds=known.thresholds, contrast=known.contrast, widths=widths)
     if clip.lower().startswith(_PAPERS_MODEL):
         return replace(settings, thresholds=Thresholds(), contrast=None)
