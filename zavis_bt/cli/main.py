@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperGroup
 
 from zavis_bt import __version__
-from zavis_bt.cli import bench, camera, demo, detector, doctor, drive, models, perception, run, sim, tree, world
+from zavis_bt.cli import bench, camera, demo, detector, doctor, drive, matcher, models, perception, run, sim, tree, world
 from zavis_bt.cli.ending import Ended, say_last, signals_end
 from zavis_bt.errors import ZavisError
 
@@ -66,6 +66,7 @@ app.command("doctor")(doctor.doctor)
 app.command("drive")(drive.drive)
 app.add_typer(camera.app, name="camera")
 app.add_typer(detector.app, name="detector")
+app.add_typer(matcher.app, name="matcher")
 app.add_typer(models.app, name="models")
 app.add_typer(perception.app, name="perception")
 app.add_typer(sim.app, name="sim")
