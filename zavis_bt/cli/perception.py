@@ -59,7 +59,7 @@ def calibrate(
     images: Annotated[int, typer.Option(min=1, help="Look at so many images, spread over the data.")] = 400,
     false_alarms: Annotated[
         float, typer.Option(min=0.0001, max=0.5, help="Share of images in which what is not there may be seen.")
-    ] = 0.02,
+    ] = 0.05,
     detection: Annotated[float, typer.Option(min=0.0, max=0.99, help="Least confidence of a detector's box.")] = 0.0,
     relative: Annotated[
         bool | None, typer.Option("--relative/--plain", help="Scores relative to those of all categories, or not.")

@@ -64,7 +64,7 @@ def calibrate(
     texts: Sequence[str],
     landmarks: Sequence[str],
     *,
-    false_alarms: float = 0.02,
+    false_alarms: float = 0.05,
     detection: float = 0.0,
     relative: bool | None = None,
 ) -> Calibration:
@@ -200,7 +200,7 @@ def calibrated(
     landmarks: Sequence[str],
     *,
     count: int = 400,
-    false_alarms: float = 0.02,
+    false_alarms: float = 0.05,
     relative: bool | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Calibration:
