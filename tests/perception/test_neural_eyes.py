@@ -19,10 +19,19 @@ from sim.world_file import load_world  # noqa: E402
 from sim.worlds import resolve_world  # noqa: E402
 from zavis_bt.cli.main import app  # noqa: E402
 from zavis_bt.errors import InputError  # noqa: E402
-from zavis_bt.perception import EyesSettings, Perceiver, Thresholds, open_eyes, split_landmarks  # noqa: E402
+from zavis_bt.perception import (  # noqa: E402
+    DEFAULT_KNOWN_LANDMARKS,
+    DEFAULT_UNKNOWN_LANDMARKS,
+    EyesSettings,
+    Perceiver,
+    Thresholds,
+    open_eyes,
+    split_landmarks,
+)
 from zavis_bt.perception.detector import DetectorConfig, save_detector  # noqa: E402
 from zavis_bt.perception.detector.building import build_network  # noqa: E402
-from zavis_bt.perception.eyes_file import write_eyes  # noqa: E402
+from zavis_bt.perception.eyes_file import read_eyes, write_eyes  # noqa: E402
+from zavis_bt.perception.models import WEIGHTS  # noqa: E402
 from zavis_bt.perception.neural import checksum  # noqa: E402
 from zavis_bt.types import CameraIntrinsics, CameraSpec  # noqa: E402
 
@@ -130,3 +139,33 @@ def test_a_mission_with_neural_eyes_is_the_same_each_time(
         assert eyes["thresholds"]["match"] == -100.0
     torch.set_num_threads(threads)
     assert results[0] == results[1]
+
+
+def test_thresholds_that_come_along_belong_to_the_weights_that_come_along() -> None:
+    file = WEIGHTS / "zavis-tiny.eyes.yaml"
+    name, shipped = read_eyes(file)
+    assert name == "neural"
+    eyes = open_eyes(str(file))  # compares checksums
+    assert eyes.thresholds == open_eyes("neural").thresholds == shipped.thresholds
+    assert dict(shipped.checksums) == eyes.about["sha256"]
+
+
+def test_networks_that_come_along_tell_furniture_and_bear_a_search() -> None:
+    eyes = open_eyes("neural")
+    assert eyes.classes is not None
+    known, unknown = split_landmarks((*DEFAULT_KNOWN_LANDMARKS, *DEFAULT_UNKNOWN_LANDMARKS), eyes.classes)
+    assert known == DEFAULT_KNOWN_LANDMARKS
+    perceiver = Perceiver(eyes.detector, eyes.matcher, known=known, unknown=unknown, thresholds=eyes.thresholds)
+    world = load_world(resolve_world("apartment"))
+    camera = SimCamera(
+        Scene.of(world), CameraSpec(CameraIntrinsics.from_fov(640, 480, 1.05), 0.0, 0.9, 0.1, 10.0, 15.0)
+    )
+    views = [camera.capture(world.starts[0], pan, -0.3, 0.0) for pan in np.arange(0.0, 6.3, 0.8)]
+    found = [
+        any(one.box.iou(thing.box) > 0.5 for one in eyes.detector.detect(view))
+        for view in views
+        for thing in view.instances
+        if thing.visible_fraction > 0.6 and thing.box.area > 40**2
+    ]
+    assert np.mean(found) > 0.5
+    assert sum(len(perceiver.perceive(view, "mug").sightings) for view in views) >= 1
