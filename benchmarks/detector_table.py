@@ -13,7 +13,9 @@ import json
 import statistics
 from pathlib import Path
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from zavis_bt.perception.clip import ClipModel, ClipObjectness
 from zavis_bt.perception.datasets import DetectionDataset, open_dataset
@@ -36,6 +38,8 @@ from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.warm_up import WarmUp
 from zavis_bt.perception.evaluation import OpenSetResult, Truth, collect, judge, truths_of
 from zavis_bt.perception.models import find_weights
+from zavis_bt.perception.several_scales import SeveralScales
+from zavis_bt.types import CameraIntrinsics, Detection, RgbdFrame
 
 NAMES = {"faster_rcnn": "Faster R-CNN", "ore": "ORE", "zavis": "ours"}
 COLUMNS = {"wi": "WI", "a_ose": "A-OSE", "u_recall": "U-Recall", "u_precision": "U-Precision", "k_map": "K-mAP"}
@@ -53,12 +57,13 @@ def main() -> None:
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--warm-up", type=int, default=2200, help="iterations of each part, once for all rows")
     parser.add_argument("--collages", type=int, default=450, help="iterations of the beginning, once for all rows")
-    parser.add_argument("--width", type=int, default=320, help="of the test images [px]")
+    parser.add_argument("--widths", default="160,320", help="at which the detector looks at test images, joined [px]")
     parser.add_argument("--images", type=int, help="of the test, from the first; all if not given")
     parser.add_argument("--threads", type=int, default=1)
     given = parser.parse_args()
     torch.set_num_threads(given.threads)
     given.out.mkdir(parents=True, exist_ok=True)
+    widths = [int(width) for width in given.widths.split(",")]
     train = Decoded(open_dataset(given.train), given.out / "train.npy", 320)
     test = open_dataset(given.test)
     for seed in map(int, given.seeds.split(",")):
@@ -66,14 +71,14 @@ def main() -> None:
             result = given.out / f"{method}-{seed}.json"
             if result.exists():
                 continue
-            detector = trained(method, seed, train, given.out / f"{method}-{seed}", given)
-            judged = evaluated(detector, test, given.width, given.images)
-            result.write_text(json.dumps({"iterations": given.iterations, "width": given.width, **judged.as_dict()}))
+            file = trained(method, seed, train, given.out / f"{method}-{seed}", given)
+            judged = evaluated(file, test, widths, given.images)
+            result.write_text(json.dumps({"iterations": given.iterations, "widths": widths, **judged.as_dict()}))
     print(table(given.out))
 
 
-def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given: argparse.Namespace) -> NeuralDetector:
-    """Train, or go on training, one detector."""
+def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given: argparse.Namespace) -> Path:
+    """Train, or go on training, one detector, and return its weights file."""
     config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
     network = build_network(config, seed)
     begin(network, data, given)
@@ -82,7 +87,7 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed, "batch": given.batch}
     facts |= {"iterations": given.iterations, "collages": given.collages, "warm_up": given.warm_up}
     save_detector(network, folder / "detector.safetensors", facts)
-    return NeuralDetector.load(folder / "detector.safetensors")
+    return folder / "detector.safetensors"
 
 
 def begin(network: DetectorNetwork, data: DetectionDataset, given: argparse.Namespace) -> None:
@@ -123,11 +128,18 @@ def labelling(method: str) -> Labelling | None:
     return ProposalLabelling() if method == "ore" else None
 
 
-def evaluated(detector: NeuralDetector, test: DetectionDataset, width: int, images: int | None) -> OpenSetResult:
-    chosen = range(len(test))[:images]
-    found = collect(test, detector.detect_image, indices=chosen, width=width)
+def evaluated(file: Path, test: DetectionDataset, widths: list[int], images: int | None) -> OpenSetResult:
+    """Judge a detector that looks at each image at one or more widths."""
+    joined = SeveralScales([NeuralDetector.load(file, width=width) for width in widths])
+    width, chosen = max(widths), range(len(test))[:images]
+
+    def predict(rgb: NDArray[np.uint8]) -> list[Detection]:
+        camera = CameraIntrinsics.from_fov(rgb.shape[1], rgb.shape[0], 1.0)
+        return joined.detect(RgbdFrame(camera, np.eye(4), 0.0, lambda: (rgb, np.zeros(rgb.shape[:2], np.float32))))
+
+    found = collect(test, predict, indices=chosen, width=width)
     truths = [large_enough(truth, width / test.size(truth.image)[0]) for truth in truths_of(test, chosen)]
-    return judge(found, truths, detector.classes, len(chosen))
+    return judge(found, truths, NeuralDetector.load(file).classes, len(chosen))
 
 
 def large_enough(truth: Truth, scale: float) -> Truth:
