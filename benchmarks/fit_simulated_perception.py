@@ -93,7 +93,7 @@ def judge(eyes: Eyes, frame: SimFrame, names: Sequence[str]) -> Frame:
     found = [
         replace(one, label=UNKNOWN_CLASS) if limits.is_unknown(one.label, one.score) else one
         for one in eyes.detector.detect(frame)
-        if one.score >= limits.detection
+        if not limits.is_faint(one.label, one.score)
     ]
     classes = {key(name) for name in eyes.classes or ()}
     landmarks = [name for name in DEFAULT_UNKNOWN_LANDMARKS if key(name) not in classes]

@@ -16,7 +16,6 @@ from zavis_bt.types import UNKNOWN_CLASS, Box, Detection, FloatArray, RgbdFrame
 BOX = Box(10, 10, 50, 50)
 TEXTS = ["mug", "desk", "bed", "sofa"]
 LANDMARKS = ("desk", "bed")
-RARE = {"false_alarms": 0.02}
 
 
 class OnePicture:
@@ -73,10 +72,14 @@ def test_box_shows_what_it_overlaps_by_half() -> None:
 def test_texts_are_matched_with_the_boxes_that_a_mission_would_match() -> None:
     images = OnePicture(Annotation(BOX, "sofa"), Annotation(Box(60, 0, 80, 20), "mug"), count=1)
     found = Found(
-        Detection(BOX, "sofa", 0.9), Detection(Box(60, 0, 80, 20), UNKNOWN_CLASS, 0.5), Detection(BOX, "sofa", 0.1)
+        Detection(BOX, "sofa", 0.9),
+        Detection(Box(60, 0, 80, 20), UNKNOWN_CLASS, 0.5),
+        Detection(BOX, UNKNOWN_CLASS, 0.1),
     )
-    eyes = Eyes(found, Scores(1, 2, 3, 4), Thresholds(detection=0.2))
+    eyes = Eyes(found, Scores(1, 2, 3, 4))
     (seen,) = look_at(eyes, images, [0], TEXTS)
+    assert seen.labels == ("sofa", UNKNOWN_CLASS, UNKNOWN_CLASS)
+    seen = seen.without_faint(Thresholds(detection=0.2))
     assert seen.shows == ("sofa", "mug")
     assert seen.scores.tolist() == [[1, 2, 3, 4]] * 2
     assert seen.named.tolist() == [[False, False, False, True], [False] * 4]
@@ -102,7 +105,8 @@ def look(shows: tuple[str | None, ...], scores: FloatArray, present: frozenset[s
 
 
 def test_match_threshold_is_the_quantile_of_what_is_not_there() -> None:
-    found = calibrate(looks(200, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0), TEXTS, LANDMARKS, **RARE)
+    seen = looks(200, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
+    found = calibrate(seen, TEXTS, LANDMARKS, false_alarms=0.02)
     alarms = (found.wrong >= found.thresholds.match - 0.005).mean()
     assert alarms == pytest.approx(0.02, abs=0.003)
     assert found.recall == 1.0
@@ -181,3 +185,23 @@ def test_known_landmarks_need_the_confidence_that_sets_right_ones_apart() -> Non
         known = replace(looks(1, (shown, [9, 9, 9, 9]))[0], labels=("sofa",), confidence=np.array([confidence]))
         seen += [known] * 20
     assert calibrate(seen, TEXTS, LANDMARKS).thresholds.known == pytest.approx(0.8)
+
+
+def test_faint_boxes_are_left_out_where_they_are_false_alarms() -> None:
+    seen = looks(60, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
+    noise = looks(60, (None, [35, 35, 35, 35]), spread=1.0)
+    both = [
+        Look(
+            (*a.shows, *b.shows),
+            np.concatenate((a.scores, b.scores)),
+            np.concatenate((a.named, b.named)),
+            (*a.labels, *b.labels),
+            np.array([0.9, 0.8, 0.25]),
+            a.present,
+        )
+        for a, b in zip(seen, noise, strict=True)
+    ]
+    found = calibrate(both, TEXTS, LANDMARKS, relative=False)
+    assert 0.25 < found.thresholds.detection <= 0.8
+    assert found.recall > 0.9
+    assert calibrate(both, TEXTS, LANDMARKS, detection=0.0, relative=False).recall < 0.1

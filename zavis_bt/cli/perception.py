@@ -60,7 +60,9 @@ def calibrate(
     false_alarms: Annotated[
         float, typer.Option(min=0.0001, max=0.5, help="Share of images in which what is not there may be seen.")
     ] = 0.05,
-    detection: Annotated[float, typer.Option(min=0.0, max=0.99, help="Least confidence of a detector's box.")] = 0.0,
+    detection: Annotated[
+        float | None, typer.Option(min=0.0, max=0.99, help="Least confidence of an unknown box; the best if not given.")
+    ] = None,
     relative: Annotated[
         bool | None, typer.Option("--relative/--plain", help="Scores relative to those of all categories, or not.")
     ] = None,
@@ -79,13 +81,20 @@ def calibrate(
         raise InputError(f"--out: there is no folder {out.parent} (make it first)")
     labelled = open_dataset(data)
     sizes = _widths(widths)
-    settings = EyesSettings(detector, clip, device, sizes, thresholds=Thresholds(detection=detection))
+    settings = EyesSettings(detector, clip, device, sizes, thresholds=Thresholds())
     eyes = open_eyes("neural", settings)
     names = (*DEFAULT_KNOWN_LANDMARKS, *DEFAULT_UNKNOWN_LANDMARKS) if landmarks is None else _names(landmarks)
     console = Console(highlight=False)
     with _bar(console) as progress:
         found = calibrated(
-            eyes, labelled, names, count=images, false_alarms=false_alarms, relative=relative, progress=progress
+            eyes,
+            labelled,
+            names,
+            count=images,
+            false_alarms=false_alarms,
+            detection=detection,
+            relative=relative,
+            progress=progress,
         )
     settings = EyesSettings(
         str(eyes.about["detector"]),
@@ -133,7 +142,8 @@ def report(found: Calibration, false_alarms: float, console: Console) -> None:
     table.add_row("match (m_t)", f"{limits.match:.2f}", what)
     what = f"{found.landmark_recall:.0%} of the landmarks' boxes pass, {found.landmark_false:.0%} of the others"
     table.add_row("landmark", f"{limits.landmark:.2f}", what)
-    table.add_row("known", f"{limits.known:.3f}", "confidence of known landmarks")
+    table.add_row("known", f"{limits.known:.3f}", "confidence of a known class")
+    table.add_row("detection", f"{limits.detection:.2f}", "confidence of unknown boxes")
     table.add_row("temperature (T_o)", f"{limits.temperature:.3f}", f"{found.landmark_accuracy:.0%} best names right")
     if found.contrast is not None:
         others = f"scores are relative to those of {len(found.contrast.texts)} texts"

@@ -8,11 +8,14 @@ Eyes look at labelled images as they would in a mission.
 - Scores may be relative to those of other texts (`Contrast`), which helps some models much and others not at all. The
   texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
 - The least confidence of a known landmark sets boxes that show their class apart from those that do not, likewise.
+- The least confidence of an ``unknown`` box is the one with which most things and landmarks are told: faint boxes are
+  false alarms more often than finds, and drive the other thresholds up.
 - T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.
 """
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -32,6 +35,7 @@ from zavis_bt.types import UNKNOWN_CLASS, FloatArray
 _MUCH = 0.05  # share of right pairs
 _FALSE_LANDMARKS = 0.05  # share of the boxes that show none
 _LEAST_PAIRS = 30  # from which a threshold means something
+_CONFIDENCES = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
 _TEMPERATURES = np.geomspace(0.05, 50.0, 241)
 
 
@@ -65,7 +69,7 @@ def calibrate(
     landmarks: Sequence[str],
     *,
     false_alarms: float = 0.05,
-    detection: float = 0.0,
+    detection: float | None = None,
     relative: bool | None = None,
 ) -> Calibration:
     """Return the thresholds that suit what eyes made of images.
@@ -75,21 +79,24 @@ def calibrate(
         texts: What the boxes were matched with.
         landmarks: Names of landmarks that are told by matching; those that are no texts are left out.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
-        detection: Confidence below which boxes were not looked at.
+        detection: Confidence below which ``unknown`` boxes are not looked at; None for the best.
         relative: Whether scores are to be relative to those of all texts; None for whichever tells much more, the
             paper's plain scores if in doubt.
 
     Raises:
         InputError: The images show too little to tell.
     """
+    settle = partial(calibrate, looks, texts, landmarks, false_alarms=false_alarms)
     if relative is None:
-        settle = partial(calibrate, looks, texts, landmarks, false_alarms=false_alarms, detection=detection)
-        plain, other = settle(relative=False), settle(relative=True)
+        plain, other = (settle(detection=detection, relative=choice) for choice in (False, True))
         return other if other.recall > plain.recall + _MUCH else plain
+    if detection is None:
+        return _best(partial(settle, relative=relative))
+    looks = [look.without_faint(Thresholds(detection=detection)) for look in looks]
     contrast = _contrast(looks, texts) if relative else None
     if contrast is not None:
         looks = [replace(look, scores=contrast.apply(look.scores, look.scores)) for look in looks]
-    first = Thresholds(detection=detection, known=round(max(_sure_of_known(looks), detection), 3))
+    first = Thresholds(detection=detection, known=round(_sure_of_known(looks), 3))
     right = np.concatenate([np.empty(0), *(_right(look, texts, first) for look in looks)])
     wrong = np.concatenate([np.empty(0), *(_wrong(look, texts, first) for look in looks)])
     _need(len(right), "boxes around what is annotated")
@@ -116,6 +123,20 @@ def calibrate(
         boxes=sum(len(look.shows) for look in looks),
         images=len(looks),
     )
+
+
+def _best(settle: Callable[..., Calibration]) -> Calibration:
+    """Return the calibration with the least confidence of ``unknown`` boxes that tells most."""
+    found = [settle(detection=0.0)]
+    for least in _CONFIDENCES:
+        with contextlib.suppress(InputError):  # too few boxes are left to tell
+            found.append(settle(detection=least))
+    return max(found, key=_told)
+
+
+def _told(found: Calibration) -> float:
+    """Return how many things and landmarks pass their thresholds."""
+    return found.recall * len(found.right) + found.landmark_recall * found.landmarks
 
 
 def _contrast(looks: Sequence[Look], texts: Sequence[str]) -> Contrast:
@@ -201,6 +222,7 @@ def calibrated(
     *,
     count: int = 400,
     false_alarms: float = 0.05,
+    detection: float | None = None,
     relative: bool | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Calibration:
@@ -212,6 +234,7 @@ def calibrated(
         landmarks: Names of landmarks.
         count: At most so many images, evenly spread over the data set.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
+        detection: Confidence below which ``unknown`` boxes are not looked at; None for the best.
         relative: Whether scores are to be relative to those of the data's categories; None for the better.
         progress: Told how many images are done, of how many.
 
@@ -227,5 +250,4 @@ def calibrated(
         progress(len(looks), len(indices))
     known = {key(name) for name in eyes.classes or ()}
     told = [name for name in landmarks if key(name) not in known]
-    detection = eyes.thresholds.detection
     return calibrate(looks, texts, told, false_alarms=false_alarms, detection=detection, relative=relative)

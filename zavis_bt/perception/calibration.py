@@ -20,7 +20,7 @@ class Thresholds:
     temperature: float = 1.0
     """T_o of the softmax over landmark names, above 0, 100 × cosine."""
     detection: float = 0.0
-    """Confidence below which the detector's boxes are not looked at, 0 to 1."""
+    """Confidence below which an ``unknown`` box of the detector is not looked at, 0 to 1."""
     known: float = 0.0
     """Confidence below which a box of a known class counts as ``unknown``, 0 to 1."""
 
@@ -38,6 +38,10 @@ class Thresholds:
         for name, share in (("detection", self.detection), ("known", self.known)):
             if not 0.0 <= share < 1.0:
                 raise InputError(f"thresholds: {name} is {share} (0 or more, below 1)")
+
+    def is_faint(self, label: str, confidence: float) -> bool:
+        """Return whether a detector's box is not looked at."""
+        return label == UNKNOWN_CLASS and confidence < self.detection
 
     def is_unknown(self, label: str, confidence: float) -> bool:
         """Return whether a detector's box is to be told by matching."""

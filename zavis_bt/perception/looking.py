@@ -39,6 +39,19 @@ class Look:
     present: frozenset[str]
     """Categories that are annotated, be it as ignored."""
 
+    def without_faint(self, thresholds: Thresholds) -> Look:
+        """Return what is left without the boxes that a `Perceiver` would not look at."""
+        rows = zip(self.labels, self.confidence.tolist(), strict=True)
+        kept = np.flatnonzero([not thresholds.is_faint(*row) for row in rows])
+        return Look(
+            tuple(self.shows[k] for k in kept),
+            self.scores[kept],
+            self.named[kept],
+            tuple(self.labels[k] for k in kept),
+            self.confidence[kept],
+            self.present,
+        )
+
     def matched(self, thresholds: Thresholds) -> NDArray[np.bool_]:
         """Return (n, m) whether a `Perceiver` would match the box with the text."""
         rows = zip(self.labels, self.confidence.tolist(), strict=True)
@@ -50,7 +63,7 @@ def look_at(eyes: Eyes, images: DetectionDataset, indices: Sequence[int], texts:
     """Yield what eyes make of images, one by one.
 
     Args:
-        eyes: Detector and matcher; boxes below ``thresholds.detection`` are not looked at.
+        eyes: Detector and matcher.
         images: Labelled.
         indices: Which of them.
         texts: What boxes are matched with.
@@ -64,7 +77,7 @@ def look_at(eyes: Eyes, images: DetectionDataset, indices: Sequence[int], texts:
         boxes, labels, confidence, shows = [], [], [], []
         for found in eyes.detector.detect(frame):
             shown, sure = what_it_shows(found.box, annotations)
-            if sure and found.score >= eyes.thresholds.detection:
+            if sure:
                 boxes.append(found.box)
                 labels.append(found.label)
                 confidence.append(found.score)

@@ -111,9 +111,9 @@ class Perceiver:
         return Percept(tuple(distinct), self._candidates(frame, target, matched, scores[:, -1]))
 
     def _detect(self, frame: RgbdFrame) -> list[Detection]:
-        least = self._thresholds.detection
         found = self._detector.detect(frame)
-        usable = [one for one in found if math.isfinite(one.score) and one.score >= least]
+        faint = self._thresholds.is_faint
+        usable = [one for one in found if math.isfinite(one.score) and not faint(one.label, one.score)]
         return sorted(usable, key=lambda detection: (-detection.score, detection.box))
 
     def _match(self, frame: RgbdFrame, boxes: Sequence[Box], target: str) -> FloatArray:
