@@ -15,7 +15,21 @@ import typer
 from typer.core import TyperGroup
 
 from zavis_bt import __version__
-from zavis_bt.cli import bench, camera, demo, detector, doctor, drive, matcher, models, perception, run, sim, tree, world
+from zavis_bt.cli import (
+    bench,
+    camera,
+    demo,
+    detector,
+    doctor,
+    drive,
+    matcher,
+    models,
+    perception,
+    run,
+    sim,
+    tree,
+    world,
+)
 from zavis_bt.cli.ending import Ended, say_last, signals_end
 from zavis_bt.errors import ZavisError
 
