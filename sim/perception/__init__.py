@@ -2,7 +2,14 @@
 
 from sim.perception.curves import DetectorSettings, MatcherSettings
 from sim.perception.detector import SimDetector
-from sim.perception.fitted import FITTED_TO_NETWORKS
+from sim.perception.fitted import FITTED_THRESHOLDS, FITTED_TO_NETWORKS
 from sim.perception.matcher import SimMatcher
 
-__all__ = ["FITTED_TO_NETWORKS", "DetectorSettings", "MatcherSettings", "SimDetector", "SimMatcher"]
+__all__ = [
+    "FITTED_THRESHOLDS",
+    "FITTED_TO_NETWORKS",
+    "DetectorSettings",
+    "MatcherSettings",
+    "SimDetector",
+    "SimMatcher",
+]

@@ -7,9 +7,16 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sim.perception import FITTED_TO_NETWORKS, DetectorSettings, MatcherSettings, SimDetector, SimMatcher
+from sim.perception import (
+    FITTED_THRESHOLDS,
+    FITTED_TO_NETWORKS,
+    DetectorSettings,
+    MatcherSettings,
+    SimDetector,
+    SimMatcher,
+)
 from zavis_bt.errors import InputError
-from zavis_bt.perception import Eyes, EyesSettings, open_eyes, split_landmarks
+from zavis_bt.perception import Eyes, EyesSettings, Thresholds, open_eyes, split_landmarks
 from zavis_bt.perception.eyes import find_eyes, is_file
 
 if TYPE_CHECKING:
@@ -71,6 +78,7 @@ def eyes_of(
         return Eyes(
             SimDetector(known, rng("detector"), detector),
             SimMatcher(similarity, rng("matcher"), matcher),
+            Thresholds(**FITTED_THRESHOLDS) if name == FITTED else Thresholds(),
             about={"detector": asdict(detector), "matcher": asdict(matcher)},
         )
     return open_eyes(name, EyesSettings(threads=threads), others=_SIMULATED)
