@@ -33,7 +33,7 @@ from zavis_bt.perception.naming import key
 from zavis_bt.types import UNKNOWN_CLASS, FloatArray
 
 _MUCH = 0.05  # share of right pairs
-_FALSE_LANDMARKS = 0.05  # share of the boxes that show none
+_FALSE_LANDMARKS = 0.02  # share of the boxes that show none
 _LEAST_PAIRS = 30  # from which a threshold means something
 _CONFIDENCES = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
 _TEMPERATURES = np.geomspace(0.05, 50.0, 241)
