@@ -130,7 +130,7 @@ def labelling(method: str) -> Labelling | None:
 
 def evaluated(file: Path, test: DetectionDataset, widths: list[int], images: int | None) -> OpenSetResult:
     """Judge a detector that looks at each image at one or more widths."""
-    joined = SeveralScales([NeuralDetector.load(file, width=width) for width in widths])
+    joined = SeveralScales({width: NeuralDetector.load(file, width=width) for width in widths})
     width, chosen = max(widths), range(len(test))[:images]
 
     def predict(rgb: NDArray[np.uint8]) -> list[Detection]:

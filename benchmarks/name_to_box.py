@@ -59,7 +59,7 @@ def main() -> None:
     options = parsed()
     dataset = open_dataset(options.data)
     weights = find_weights(options.detector)
-    detectors = [loaded(weights, width, options) for width in options.widths]
+    detectors = {width: loaded(weights, width, options) for width in options.widths}
     architecture, pretrained, _ = find_clip(options.clip)
     matcher = ClipMatcher(ClipModel.load(architecture, pretrained))
     torch.set_num_threads(options.threads)
@@ -71,7 +71,8 @@ def main() -> None:
     note = " (rendered pixels)" if dataset.rendered else ""
     print(f"{dataset.name}: {len(indices)} images, {len(answers.queries)} names{note}\n")
     print_results(results)
-    times = {threads: timed(dataset, indices[: options.timed], detectors[0], matcher, threads) for threads in (1, 2)}
+    first = detectors[options.widths[0]]
+    times = {threads: timed(dataset, indices[: options.timed], first, matcher, threads) for threads in (1, 2)}
     print_times(times)
     if options.out is not None:
         told = {"data": dataset.name, "rendered": dataset.rendered, "widths": options.widths}

@@ -184,5 +184,12 @@ def test_several_scales_keep_the_best_box_of_each_thing() -> None:
     other = Box(20, 20, 40, 40)
     small = ScriptedDetector(unknown(Box(1, 1, 9, 8.5), 0.9))
     large = ScriptedDetector(unknown(BOX, 0.8), unknown(other, 0.95), Detection(BOX, "sofa", 0.3))
-    found = SeveralScales((small, large)).detect(frame_of([]))
+    found = SeveralScales({32: small, 64: large}).detect(frame_of([]))
     assert [(one.box, one.score) for one in found] == [(other, 0.95), (Box(1, 1, 9, 8.5), 0.9), (BOX, 0.3)]
+
+
+def test_a_scale_that_would_show_the_same_image_again_is_left_out() -> None:
+    width = frame_of([]).intrinsics.width
+    below, at, above = (ScriptedDetector(unknown(BOX, score)) for score in (0.3, 0.5, 0.9))
+    (best,) = SeveralScales({width // 2: below, width: at, 2 * width: above}).detect(frame_of([]))
+    assert best.score == 0.5

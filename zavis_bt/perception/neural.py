@@ -55,7 +55,9 @@ def _opened(settings: EyesSettings) -> Eyes:
     check_checksums(settings, checksums)
     settings = with_meaning(settings)
     scales = [NeuralDetector.load(file, device=settings.device, width=width) for width in settings.widths or (None,)]
-    detector: Detector = scales[0] if len(scales) == 1 else SeveralScales(scales)
+    detector: Detector = (
+        scales[0] if len(scales) == 1 else SeveralScales(dict(zip(settings.widths, scales, strict=True)))
+    )
     matcher: Matcher = ClipMatcher(ClipModel.load(architecture, pretrained, device=settings.device))
     if settings.contrast is not None:
         matcher = ContrastMatcher(matcher, settings.contrast)
