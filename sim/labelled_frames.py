@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import signal
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
@@ -20,7 +20,7 @@ from sim.appearance import SHAPES, CameraEffects, random_frame, random_scene
 from sim.frame import SimFrame
 from sim.render_labels import Label
 from zavis_bt.errors import InputError, did_you_mean
-from zavis_bt.types import CameraIntrinsics
+from zavis_bt.types import Box, CameraIntrinsics
 
 _QUALITY = 92  # of the JPEG files
 _FRAMES_A_ROOM = 4
@@ -47,8 +47,8 @@ class FrameRecipe:
     """What is in the rooms; a name that stands there twice is drawn twice as often."""
     least_side: float = 12.0
     """Things whose box is narrower are marked as not to be counted (``iscrowd``) [px]."""
-    least_visible: float = 0.2
-    """The same for things of which less is in sight [share]."""
+    least_visible: float = 0.3
+    """The same for things of which less is in sight, be the rest hidden or beyond the image's border [share]."""
 
 
 def chosen_categories(without: Iterable[str] = (), also: Iterable[str] = ()) -> tuple[str, ...]:
@@ -173,12 +173,22 @@ def _write_room(room: int, *, folder: Path, recipe: FrameRecipe, count: int) -> 
             raise InputError(f"{file}: cannot be written (is the disk full?)")
         height, width = rgb.shape[:2]
         image = {"id": number, "file_name": f"images/{name}", "width": width, "height": height}
-        written.append((image, [_annotation(label, number, recipe) for label in _worth_naming(frame.labels)]))
+        written.append((image, [_annotation(label, number, recipe) for label in labels_in(frame)]))
     return written
 
 
-def _worth_naming(labels: Sequence[Label]) -> list[Label]:
-    return [label for label in labels if label.pixels >= 9 and label.category in SHAPES]
+def labels_in(frame: SimFrame) -> list[Label]:
+    """Return what a frame shows of the catalogue's things, with the share of the whole thing that is in sight.
+
+    What the image's border cuts off is not in sight, unlike in `SimFrame.labels`.
+    """
+    inside = {view.id: _share_inside(view.full_box, frame.intrinsics) for view in frame.instances}
+    worth = (label for label in frame.labels if label.pixels >= 9 and label.category in SHAPES)
+    return [label._replace(visible_fraction=label.visible_fraction * inside.get(label.id, 1.0)) for label in worth]
+
+
+def _share_inside(box: Box, camera: CameraIntrinsics) -> float:
+    return box.intersection(Box(0.0, 0.0, camera.width, camera.height)) / max(box.area, 1.0)
 
 
 def _annotation(label: Label, image: int, recipe: FrameRecipe) -> dict[str, Any]:

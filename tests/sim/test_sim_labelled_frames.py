@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.appearance import SHAPES
-from sim.labelled_frames import FrameRecipe, chosen_categories, frames_of_room, write_frames
+from sim.labelled_frames import FrameRecipe, chosen_categories, frames_of_room, labels_in, write_frames
 from zavis_bt.errors import InputError
 from zavis_bt.perception.datasets import open_dataset
 
@@ -38,7 +38,7 @@ def test_a_shorter_data_set_of_a_seed_is_the_beginning_of_a_longer_one(tmp_path:
 def test_labels_tell_what_the_frame_shows(tmp_path: Path) -> None:
     assert list(write_frames(tmp_path / "new", 4, RECIPE))
     written = json.loads((tmp_path / "new" / "annotations.json").read_text())["annotations"]
-    shown = [label for frame, _ in frames_of_room(RECIPE, 0) for label in frame.labels if label.pixels >= 9]
+    shown = [label for frame, _ in frames_of_room(RECIPE, 0) for label in labels_in(frame)]
     assert len(written) == len(shown)
     for record, label in zip(written, shown, strict=True):
         x, y, width, height = record["bbox"]
@@ -46,6 +46,19 @@ def test_labels_tell_what_the_frame_shows(tmp_path: Path) -> None:
         assert record["colour"] == label.colour
         small = min(width, height) < RECIPE.least_side or label.visible_fraction < RECIPE.least_visible
         assert record["iscrowd"] == int(small)
+
+
+def test_what_the_border_cuts_off_is_not_in_sight() -> None:
+    for frame, _ in frames_of_room(RECIPE, 1):
+        whole = {view.id: view.full_box for view in frame.instances}
+        seen = {label.id: label.visible_fraction for label in frame.labels}
+        for label in labels_in(frame):
+            width, height = frame.intrinsics.width, frame.intrinsics.height
+            box = whole.get(label.id, label.box)
+            if box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height:
+                assert label.visible_fraction == pytest.approx(seen[label.id])
+            else:
+                assert label.visible_fraction < seen[label.id]
 
 
 def test_categories_left_out_are_never_drawn() -> None:
