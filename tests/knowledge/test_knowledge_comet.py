@@ -13,12 +13,12 @@ import pytest
 torch = pytest.importorskip("torch")
 pytest.importorskip("transformers")
 
-from tokenizers import ByteLevelBPETokenizer  # noqa: E402 - only where torch is
-from transformers import AutoTokenizer, BartConfig, BartForConditionalGeneration  # noqa: E402 - only where torch is
+from tokenizers import ByteLevelBPETokenizer
+from transformers import AutoTokenizer, BartConfig, BartForConditionalGeneration
 
-from zavis_bt.errors import InputError  # noqa: E402 - only where torch is
-from zavis_bt.knowledge import CometPrior, make_prior, word_vectors  # noqa: E402 - only where torch is
-from zavis_bt.knowledge.comet import CometGenerator  # noqa: E402 - only where torch is
+from zavis_bt.errors import InputError
+from zavis_bt.knowledge import CometPrior, make_prior, word_vectors
+from zavis_bt.knowledge.comet import CometGenerator
 
 PLACES = {"laptop": "office desk", "pillow": "bed", "mug": "kitchen table"}
 LANDMARKS = ("desk", "bed", "sofa", "dining table")

@@ -7,12 +7,12 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from detector_scenes import KNOWN, write_coco_scenes  # noqa: E402  # needs torch
+from detector_scenes import KNOWN, write_coco_scenes
 
-from zavis_bt.perception.datasets import DetectionDataset, open_dataset  # noqa: E402
-from zavis_bt.perception.detector.batches import Batches, Views  # noqa: E402
-from zavis_bt.perception.detector.collages import Collages  # noqa: E402
-from zavis_bt.perception.detector.course import Course  # noqa: E402
+from zavis_bt.perception.datasets import DetectionDataset, open_dataset
+from zavis_bt.perception.detector.batches import Batches, Views
+from zavis_bt.perception.detector.collages import Collages
+from zavis_bt.perception.detector.course import Course
 
 
 @pytest.fixture

@@ -5,12 +5,12 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from zavis_bt.perception.detector import ClipLabelling, DetectorConfig, ProposalLabelling  # noqa: E402  # needs torch
-from zavis_bt.perception.detector.clustering import Clusters, free_energy  # noqa: E402
-from zavis_bt.perception.detector.mln import Mixture  # noqa: E402
-from zavis_bt.perception.detector.proposals import Proposals, Target, relabel  # noqa: E402
-from zavis_bt.perception.detector.pseudo_labels import pseudo_count  # noqa: E402
-from zavis_bt.perception.detector.rois import sample  # noqa: E402
+from zavis_bt.perception.detector import ClipLabelling, DetectorConfig, ProposalLabelling
+from zavis_bt.perception.detector.clustering import Clusters, free_energy
+from zavis_bt.perception.detector.mln import Mixture
+from zavis_bt.perception.detector.proposals import Proposals, Target, relabel
+from zavis_bt.perception.detector.pseudo_labels import pseudo_count
+from zavis_bt.perception.detector.rois import sample
 
 UNKNOWN, BACKGROUND = 2, 3
 IMAGES = torch.zeros(1, 3, 120, 160)

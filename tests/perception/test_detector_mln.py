@@ -6,8 +6,8 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from zavis_bt.perception.detector.gaussian import Gaussian  # noqa: E402  # needs torch
-from zavis_bt.perception.detector.mln import (  # noqa: E402
+from zavis_bt.perception.detector.gaussian import Gaussian
+from zavis_bt.perception.detector.mln import (
     Mixture,
     MixtureHead,
     aleatoric,

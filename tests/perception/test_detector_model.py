@@ -8,16 +8,16 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from safetensors.torch import load_file, save_file  # noqa: E402  # needs torch
+from safetensors.torch import load_file, save_file
 
-from zavis_bt.errors import InputError  # noqa: E402
-from zavis_bt.perception.detector import DetectorConfig, NeuralDetector, load_detector, save_detector  # noqa: E402
-from zavis_bt.perception.detector.building import build_network  # noqa: E402
-from zavis_bt.perception.detector.choosing import choose  # noqa: E402
-from zavis_bt.perception.detector.mln import Mixture  # noqa: E402
-from zavis_bt.perception.detector.network import DetectorNetwork  # noqa: E402
-from zavis_bt.perception.detector.rois import Regions  # noqa: E402
-from zavis_bt.types import UNKNOWN_CLASS, CameraIntrinsics, RgbdFrame  # noqa: E402
+from zavis_bt.errors import InputError
+from zavis_bt.perception.detector import DetectorConfig, NeuralDetector, load_detector, save_detector
+from zavis_bt.perception.detector.building import build_network
+from zavis_bt.perception.detector.choosing import choose
+from zavis_bt.perception.detector.mln import Mixture
+from zavis_bt.perception.detector.network import DetectorNetwork
+from zavis_bt.perception.detector.rois import Regions
+from zavis_bt.types import UNKNOWN_CLASS, CameraIntrinsics, RgbdFrame
 
 KNOWN = ("cup", "sofa", "tv")
 UNKNOWN, BACKGROUND = 3, 4

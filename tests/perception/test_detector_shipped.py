@@ -4,11 +4,11 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from sim.labelled_frames import FrameRecipe, write_frames  # noqa: E402  # needs torch
-from zavis_bt.perception.datasets import open_dataset  # noqa: E402
-from zavis_bt.perception.detector import NeuralDetector  # noqa: E402
-from zavis_bt.perception.evaluation import OpenSetResult, evaluate  # noqa: E402
-from zavis_bt.perception.models import find_weights  # noqa: E402
+from sim.labelled_frames import FrameRecipe, write_frames
+from zavis_bt.perception.datasets import open_dataset
+from zavis_bt.perception.detector import NeuralDetector
+from zavis_bt.perception.evaluation import OpenSetResult, evaluate
+from zavis_bt.perception.models import find_weights
 
 FRAMES, SEED = 40, 77_001  # no training data are of this seed
 K_MAP, U_RECALL, U_PRECISION, WI = 0.10, 0.55, 0.10, 0.35  # floors, and a ceiling, with a margin for so few frames

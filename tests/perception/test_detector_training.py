@@ -10,11 +10,11 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from detector_scenes import KNOWN, write_coco_scenes, write_voc_scenes  # noqa: E402  # needs torch
+from detector_scenes import KNOWN, write_coco_scenes, write_voc_scenes
 
-from zavis_bt.errors import InputError  # noqa: E402
-from zavis_bt.perception.datasets import open_dataset  # noqa: E402
-from zavis_bt.perception.detector import (  # noqa: E402
+from zavis_bt.errors import InputError
+from zavis_bt.perception.datasets import open_dataset
+from zavis_bt.perception.detector import (
     Checkpoint,
     ClipLabelling,
     DetectorConfig,
@@ -25,11 +25,11 @@ from zavis_bt.perception.detector import (  # noqa: E402
     TrainingSettings,
     Views,
 )
-from zavis_bt.perception.detector.backbones import TinyBody  # noqa: E402
-from zavis_bt.perception.detector.batches import Batches  # noqa: E402
-from zavis_bt.perception.detector.building import build_network, export_training  # noqa: E402
-from zavis_bt.perception.detector.decoded import Decoded  # noqa: E402
-from zavis_bt.perception.detector.warm_up import WarmUp, warm_up_body, warm_up_boxes  # noqa: E402
+from zavis_bt.perception.detector.backbones import TinyBody
+from zavis_bt.perception.detector.batches import Batches
+from zavis_bt.perception.detector.building import build_network, export_training
+from zavis_bt.perception.detector.decoded import Decoded
+from zavis_bt.perception.detector.warm_up import WarmUp, warm_up_body, warm_up_boxes
 
 SHORT = TrainingSettings(iterations=20, batch=2, learning_rate=3e-3, save_every=7, views=Views(96, 1.5, 0.0))
 

@@ -11,15 +11,15 @@ from typer.testing import CliRunner
 torch = pytest.importorskip("torch")
 open_clip = pytest.importorskip("open_clip")
 
-from safetensors.torch import save_file  # noqa: E402  # after the check that torch is installed
+from safetensors.torch import save_file
 
-from sim.camera import SimCamera  # noqa: E402
-from sim.scene import Scene  # noqa: E402
-from sim.world_file import load_world  # noqa: E402
-from sim.worlds import resolve_world  # noqa: E402
-from zavis_bt.cli.main import app  # noqa: E402
-from zavis_bt.errors import InputError  # noqa: E402
-from zavis_bt.perception import (  # noqa: E402
+from sim.camera import SimCamera
+from sim.scene import Scene
+from sim.world_file import load_world
+from sim.worlds import resolve_world
+from zavis_bt.cli.main import app
+from zavis_bt.errors import InputError
+from zavis_bt.perception import (
     DEFAULT_KNOWN_LANDMARKS,
     DEFAULT_UNKNOWN_LANDMARKS,
     EyesSettings,
@@ -28,12 +28,12 @@ from zavis_bt.perception import (  # noqa: E402
     open_eyes,
     split_landmarks,
 )
-from zavis_bt.perception.detector import DetectorConfig, save_detector  # noqa: E402
-from zavis_bt.perception.detector.building import build_network  # noqa: E402
-from zavis_bt.perception.eyes_file import read_eyes, write_eyes  # noqa: E402
-from zavis_bt.perception.models import WEIGHTS  # noqa: E402
-from zavis_bt.perception.neural import checksum  # noqa: E402
-from zavis_bt.types import CameraIntrinsics, CameraSpec  # noqa: E402
+from zavis_bt.perception.detector import DetectorConfig, save_detector
+from zavis_bt.perception.detector.building import build_network
+from zavis_bt.perception.eyes_file import read_eyes, write_eyes
+from zavis_bt.perception.models import WEIGHTS
+from zavis_bt.perception.neural import checksum
+from zavis_bt.types import CameraIntrinsics, CameraSpec
 
 CLASSES = ("chair", "sofa", "dining table", "tv")
 CLIP = {
