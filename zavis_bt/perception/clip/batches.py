@@ -34,7 +34,7 @@ class CropBatch:
 
 
 class CropBatches:
-    """Draws batches: rare categories more often than they are, hidden things less often."""
+    """Draws batches: every category as often as any other, hidden things less often."""
 
     def __init__(
         self, patches: Patches, writer: CaptionWriter, preprocessing: Preprocessing, settings: MatcherSettings
@@ -48,7 +48,7 @@ class CropBatches:
             raise InputError(f"training: no crop shows {settings.least_visible:.0%} of its thing (other data)")
         kinds = patches.categories[self._things]
         sight = patches.visible[self._things] / (2 * settings.least_visible)
-        weights = np.minimum(sight, 1.0) / np.sqrt(np.bincount(kinds))[kinds]
+        weights = np.minimum(sight, 1.0) / np.bincount(kinds)[kinds]
         self._cumulative = np.cumsum(weights) / weights.sum()
 
     def draw(self, step: int, size: int) -> CropBatch:

@@ -23,6 +23,7 @@ from zavis_bt.perception.clip.loss import contrastive_loss
 from zavis_bt.perception.clip.patches import Patches
 from zavis_bt.perception.clip.settings import MatcherSettings
 from zavis_bt.perception.clip.vocabulary import Vocabulary
+from zavis_bt.perception.precision import mixed_precision
 
 _MOST_SCALE = math.log(100)  # of the cosines, as in CLIP
 _HEADS = 0.5  # weight of the classifiers beside the text tower, falling to nothing
@@ -139,8 +140,7 @@ class MatcherTraining:
     def _step(self, share: float) -> dict[str, float]:
         half = share < self.settings.half_size and can_halve(self._visual, self._size)
         batch = self._batches.draw(self.done, self._size // 2 if half else self._size)
-        mixed = torch.autocast("cuda") if self._device.startswith("cuda") else nullcontext()
-        with reading_half_size(self._visual, self._size) if half else nullcontext(), mixed:
+        with reading_half_size(self._visual, self._size) if half else nullcontext():
             loss, figures = self._loss(batch, share)
         if not torch.isfinite(loss):
             raise InputError(
@@ -157,7 +157,9 @@ class MatcherTraining:
         return figures
 
     def _loss(self, batch: CropBatch, share: float) -> tuple[Tensor, dict[str, float]]:
-        vectors = self.network.encode_image(batch.images.to(self._device))  # type: ignore[operator]  # open_clip's
+        with mixed_precision(self._device):
+            read = self.network.encode_image(batch.images.to(self._device))  # type: ignore[operator]  # open_clip's
+        vectors: Tensor = read.float()
         images = F.normalize(vectors, dim=-1)
         texts = dict.fromkeys((*self._names, *self._colours, *batch.texts))
         rows = {text: row for row, text in enumerate(texts)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +24,7 @@ from zavis_bt.perception.detector.proposals import Target
 from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.training_log import TrainingLog
 from zavis_bt.perception.detector.warm_up import WarmUp, warm_up
+from zavis_bt.perception.precision import mixed_precision
 
 _FIT_BATCHES = 40  # of the training's, for the distributions that tell unknown things
 _CLIP_NORM = 5.0
@@ -150,8 +151,7 @@ class Training:
         images, targets, is_collage = self._moved(batch)
         labelling = None if is_collage else self._labelling
         progress = self.done / self.settings.iterations
-        mixed = torch.autocast("cuda") if self._device.startswith("cuda") else nullcontext()
-        with _repeatable(self.settings.seed, self.done), mixed:
+        with _repeatable(self.settings.seed, self.done), mixed_precision(self._device):
             losses = self.network.learn(images, targets, labelling, progress).losses
             total = torch.stack(list(losses.values())).sum()
         self._check(total)

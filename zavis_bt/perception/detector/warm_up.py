@@ -22,6 +22,7 @@ from zavis_bt.perception.datasets import DetectionDataset
 from zavis_bt.perception.detector.backbones import TinyBody
 from zavis_bt.perception.detector.batches import Batches, Views, lit
 from zavis_bt.perception.detector.network import DetectorNetwork
+from zavis_bt.perception.precision import mixed_precision
 
 _SAMPLES = 96  # boxes of a view of many things
 _SIDE, _LEAST_SIDE, _WIDTH = 64, 20.0, 320  # of cut-outs, of things in the full image, of the images that are cut [px]
@@ -99,7 +100,9 @@ def warm_up_body(
         images = np.stack([_cut_out(dataset, index, box, rng) for index, box, _ in chosen])
         batch = normalise(torch.from_numpy(images).to(device).permute(0, 3, 1, 2).float() / 255)
         truth = torch.tensor([label for _, _, label in chosen], device=device)
-        logits = answer(body.summary(batch.contiguous(memory_format=torch.channels_last)))
+        with mixed_precision(device.type):
+            read = body.summary(batch.contiguous(memory_format=torch.channels_last))
+        logits = answer(read.float())
         F.cross_entropy(logits, truth, label_smoothing=0.05).backward()
         nn.utils.clip_grad_norm_(parameters, 5.0)
         optimiser.step()
@@ -137,9 +140,13 @@ def warm_up_boxes(
                 group["lr"] = rate * _rate(done, len(batches))
             images, targets = batches[done]
             images, targets = images.to(device), [each.to(device) for each in targets]
-            features = network.body(network.normalised(images.contiguous(memory_format=torch.channels_last)))
+            with mixed_precision(device.type):
+                features = network.body(network.normalised(images.contiguous(memory_format=torch.channels_last)))
             sizes = [(images.shape[2], images.shape[3])] * len(images)
             near = [clip_boxes_to_image(_jittered(each.boxes), sizes[0]) for each in targets]
+            if not any(map(len, near)):
+                continue
+            features = {name: each.float() for name, each in features.items()}
             loss = torch.stack(list(network.rois.learn(features, near, targets, sizes).losses.values())).sum()
             loss.backward()
             nn.utils.clip_grad_norm_(parameters, 5.0)
