@@ -187,10 +187,11 @@ def test_known_landmarks_need_the_confidence_that_sets_right_ones_apart() -> Non
     assert calibrate(seen, TEXTS, LANDMARKS).thresholds.known == pytest.approx(0.8)
 
 
-def test_faint_boxes_are_left_out_where_they_are_false_alarms() -> None:
-    seen = looks(60, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
-    noise = looks(60, (None, [35, 35, 35, 35]), spread=1.0)
-    both = [
+def with_noise(count: int = 60) -> list[Look]:
+    """Return looks at a mug and a desk, each with a faint box of nothing that looks like all there is."""
+    seen = looks(count, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
+    noise = looks(count, (None, [35, 35, 35, 35]), spread=1.0)
+    return [
         Look(
             (*a.shows, *b.shows),
             np.concatenate((a.scores, b.scores)),
@@ -201,7 +202,30 @@ def test_faint_boxes_are_left_out_where_they_are_false_alarms() -> None:
         )
         for a, b in zip(seen, noise, strict=True)
     ]
-    found = calibrate(both, TEXTS, LANDMARKS, relative=False)
+
+
+def test_faint_boxes_are_left_out_where_they_are_false_landmarks() -> None:
+    found = calibrate(with_noise(), TEXTS, LANDMARKS, relative=False)
     assert 0.25 < found.thresholds.detection <= 0.8
+    assert found.landmark_recall > 0.9
+    assert calibrate(with_noise(), TEXTS, LANDMARKS, detection=0.0, relative=False).landmark_recall < 0.1
+
+
+def test_confidence_counts_where_faint_boxes_score_high() -> None:
+    found = calibrate(with_noise(), TEXTS, LANDMARKS, detection=0.0, relative=False)
+    assert found.thresholds.trust > 0
     assert found.recall > 0.9
-    assert calibrate(both, TEXTS, LANDMARKS, detection=0.0, relative=False).recall < 0.1
+    even = looks(60, ("mug", [30, 10, 10, 10]), ("desk", [10, 28, 14, 5]), spread=1.0)
+    assert calibrate(even, TEXTS, LANDMARKS, relative=False).thresholds.trust == 0
+
+
+def test_known_landmarks_names_count_only_with_boxes_of_unsure_class() -> None:
+    desk = looks(40, ("desk", [10, 28, 14, 35]))  # looks rather like a sofa
+    sofas = [
+        replace(each, labels=("sofa",), confidence=np.array([confidence]))
+        for shown, count, confidence in (("sofa", 40, 0.9), ("sofa", 40, 0.3), (None, 80, 0.4))
+        for each in looks(count, (shown, [10, 14, 14, 36]))
+    ]
+    for known, right in (((), 0.5), (("sofa",), 1.0)):
+        found = calibrate([*desk, *sofas], TEXTS, (*LANDMARKS, "sofa"), known, relative=False)
+        assert found.landmark_accuracy == right

@@ -269,7 +269,7 @@ def test_default_landmarks_hold_the_papers() -> None:
     assert not set(DEFAULT_KNOWN_LANDMARKS) & set(DEFAULT_UNKNOWN_LANDMARKS)
 
 
-def test_class_that_the_detector_is_not_sure_of_counts_as_unknown() -> None:
+def test_class_that_the_detector_is_not_sure_of_is_told_by_matching() -> None:
     matcher = ScriptedMatcher({SOFA_BOX: {"bed": 26.0, "mug": 31.0}})
     sure = perceive(matcher, sofa(score=0.4), known=0.4)
     assert [sighting.label for sighting in sure.sightings] == ["sofa"]
@@ -277,6 +277,30 @@ def test_class_that_the_detector_is_not_sure_of_counts_as_unknown() -> None:
     unsure = perceive(matcher, sofa(score=0.39), known=0.4, target="lamp")
     assert [sighting.label for sighting in unsure.sightings] == ["bed"]
     assert perceive(matcher, sofa(score=0.39), known=0.4).candidates
+
+
+def test_names_of_known_landmarks_are_for_boxes_of_unsure_class() -> None:
+    scores = {"sofa": 30.0, "bed": 29.0}
+    matcher = ScriptedMatcher({SOFA_BOX: scores, DESK_BOX: scores})
+    percept = perceive(matcher, sofa(score=0.39), unknown(DESK_BOX), known=0.4)
+    told = {sighting.label: dict(sighting.probabilities) for sighting in percept.sightings}
+    assert set(told) == {"sofa", "bed"}
+    assert set(told["sofa"]) == {*NAMES, "sofa"}
+    assert set(told["bed"]) == set(NAMES)
+    assert len(matcher.calls) == 1
+
+
+def test_candidates_score_less_the_less_the_detector_trusts_them() -> None:
+    matcher = ScriptedMatcher({MUG_BOX: {"mug": 35.0}})
+    for confidence, expected in ((1.0, 35.0), (0.9, 35 + 10 * math.log(0.9)), (0.5, None)):
+        candidates = perceive(matcher, unknown(MUG_BOX, confidence), trust=10.0).candidates
+        assert [each.score for each in candidates] == ([] if expected is None else [pytest.approx(expected)])
+
+
+@pytest.mark.parametrize("trust", [-1.0, math.inf])
+def test_trust_out_of_range_is_refused(trust: float) -> None:
+    with pytest.raises(InputError, match="thresholds: trust"):
+        Thresholds(trust=trust)
 
 
 def test_faint_boxes_are_not_looked_at() -> None:

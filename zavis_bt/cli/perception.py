@@ -144,6 +144,7 @@ def report(found: Calibration, false_alarms: float, console: Console) -> None:
     table.add_row("landmark", f"{limits.landmark:.2f}", what)
     table.add_row("known", f"{limits.known:.3f}", "confidence of a known class")
     table.add_row("detection", f"{limits.detection:.2f}", "confidence of unknown boxes")
+    table.add_row("trust (W)", f"{limits.trust:g}", "of the detector's confidence beside the matching score")
     table.add_row("temperature (T_o)", f"{limits.temperature:.3f}", f"{found.landmark_accuracy:.0%} best names right")
     if found.contrast is not None:
         others = f"scores are relative to those of {len(found.contrast.texts)} texts"

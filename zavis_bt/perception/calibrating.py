@@ -5,6 +5,7 @@ Eyes look at labelled images as they would in a mission.
 - m_t: a text that nothing in the image answers to shall bring a candidate in at most a given share of the images.
 - The landmarks' threshold sets boxes of furniture that goes by a landmark's name apart from all others, by the
   greatest sum of both shares told rightly (Youden's index).
+- The trust in the detector's confidence is the one with which most right pairs reach m_t.
 - Scores may be relative to those of other texts (`Contrast`), which helps some models much and others not at all. The
   texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
 - The least confidence of a known landmark sets boxes that show their class apart from those that do not, likewise.
@@ -35,6 +36,7 @@ from zavis_bt.types import UNKNOWN_CLASS, FloatArray
 _MUCH = 0.05  # share of right pairs
 _FALSE_LANDMARKS = 0.02  # share of the boxes that show none
 _LEAST_PAIRS = 30  # from which a threshold means something
+_TRUSTS = (0.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0)
 _CONFIDENCES = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
 _TEMPERATURES = np.geomspace(0.05, 50.0, 241)
 
@@ -67,6 +69,7 @@ def calibrate(
     looks: Sequence[Look],
     texts: Sequence[str],
     landmarks: Sequence[str],
+    known: Sequence[str] = (),
     *,
     false_alarms: float = 0.05,
     detection: float | None = None,
@@ -77,7 +80,8 @@ def calibrate(
     Args:
         looks: What they made of them.
         texts: What the boxes were matched with.
-        landmarks: Names of landmarks that are told by matching; those that are no texts are left out.
+        landmarks: Names of landmarks; those that are no texts are left out.
+        known: Those of them that are classes of the detector: only boxes that it is not sure of are matched with them.
         false_alarms: Share of images in which a text that nothing answers to may bring a candidate, 0 to 1.
         detection: Confidence below which ``unknown`` boxes are not looked at; None for the best.
         relative: Whether scores are to be relative to those of all texts; None for whichever tells much more, the
@@ -86,7 +90,7 @@ def calibrate(
     Raises:
         InputError: The images show too little to tell.
     """
-    settle = partial(calibrate, looks, texts, landmarks, false_alarms=false_alarms)
+    settle = partial(calibrate, looks, texts, landmarks, known, false_alarms=false_alarms)
     if relative is None:
         plain, other = (settle(detection=detection, relative=choice) for choice in (False, True))
         return other if other.recall > plain.recall + _MUCH else plain
@@ -97,25 +101,23 @@ def calibrate(
     if contrast is not None:
         looks = [replace(look, scores=contrast.apply(look.scores, look.scores)) for look in looks]
     first = Thresholds(detection=detection, known=round(_sure_of_known(looks), 3))
-    right = np.concatenate([np.empty(0), *(_right(look, texts, first) for look in looks)])
-    wrong = np.concatenate([np.empty(0), *(_wrong(look, texts, first) for look in looks)])
-    _need(len(right), "boxes around what is annotated")
-    match = float(np.quantile(wrong, 1 - false_alarms, method="higher"))
-    if not np.isfinite(match):  # rarer than asked for, even if every box of another thing were a candidate
-        match = float(right.min())
+    pairs = _Pairs(looks, texts, first)
+    tried = [_as_candidates(pairs, replace(first, trust=trust), false_alarms) for trust in _TRUSTS]
+    first = max(tried, key=lambda each: float((pairs.right(each) >= each.match).mean()))
+    right, wrong = pairs.right(first), pairs.wrong(first)
     names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
-    rows, truth = _landmark_rows(looks, [texts.index(name) for name in names], names, first)
+    rows, truth = _landmark_rows(looks, texts, names, known, first)
     is_landmark = truth >= 0
     _need(int(is_landmark.sum()), "unknown boxes around landmarks" + (f" ({', '.join(names)})" if names else ""))
     best, told, others = rows.max(axis=1), rows[is_landmark], rows[~is_landmark].max(axis=1)
     landmark = float(np.quantile(others, 1 - _FALSE_LANDMARKS) if len(others) else best.min())
     temperature = _temperature(told, truth[is_landmark])
     return Calibration(
-        replace(first, match=round(match, 2), landmark=round(landmark, 2), temperature=round(temperature, 3)),
+        replace(first, landmark=round(landmark, 2), temperature=round(temperature, 3)),
         contrast,
         right,
         wrong,
-        recall=float((right >= match).mean()),
+        recall=float((right >= first.match).mean()),
         landmark_recall=float((best[is_landmark] >= landmark).mean()),
         landmark_false=float((others >= landmark).mean()) if len(others) else 0.0,
         landmark_accuracy=float((told.argmax(axis=1) == truth[is_landmark]).mean()),
@@ -155,32 +157,66 @@ def _need(count: int, what: str) -> None:
         raise InputError(f"calibrate: only {count} {what} (at least {_LEAST_PAIRS}: more images, or a better detector)")
 
 
-def _right(look: Look, texts: Sequence[str], thresholds: Thresholds) -> FloatArray:
-    """Return the scores of boxes with the name of what they show, as far as the two are matched."""
-    matched = look.matched(thresholds)
-    pairs = [(k, texts.index(shown)) for k, shown in enumerate(look.shows) if shown in texts]
-    return np.array([look.scores[pair] for pair in pairs if matched[pair]])
+def _as_candidates(pairs: _Pairs, thresholds: Thresholds, false_alarms: float) -> Thresholds:
+    """Return the thresholds with the m_t that suits them."""
+    right, wrong = pairs.right(thresholds), pairs.wrong(thresholds)
+    _need(len(right), "boxes around what is annotated")
+    match = float(np.quantile(wrong, 1 - false_alarms, method="higher"))
+    if not np.isfinite(match):  # rarer than asked for, even if every box of another thing were a candidate
+        match = float(right.min())
+    return replace(thresholds, match=round(match, 2))
 
 
-def _wrong(look: Look, texts: Sequence[str], thresholds: Thresholds) -> FloatArray:
-    """Return the highest score of each text that nothing in the image answers to; -inf without a box."""
-    absent = [column for column, text in enumerate(texts) if text not in look.present]
-    scores = np.where(look.matched(thresholds), look.scores, -np.inf)
-    return np.asarray(scores[:, absent].max(axis=0, initial=-np.inf))
+class _Pairs:
+    """Boxes of all images and texts, as far as the two are matched."""
+
+    def __init__(self, looks: Sequence[Look], texts: Sequence[str], thresholds: Thresholds) -> None:
+        number = {text: column for column, text in enumerate(texts)}
+        matched = np.concatenate([np.empty((0, len(texts)), dtype=np.bool_), *(x.matched(thresholds) for x in looks)])
+        scores = np.concatenate([np.empty((0, len(texts))), *(look.scores for look in looks)])
+        self._scores = np.where(matched, scores, -np.inf)
+        self._confidence = np.concatenate([np.empty(0), *(look.confidence for look in looks)])
+        self._image = np.repeat(np.arange(len(looks)), [len(look.shows) for look in looks])
+        shown = np.array([number.get(name or "", -1) for look in looks for name in look.shows], dtype=np.intp)
+        rows = np.flatnonzero(shown >= 0)
+        rows = rows[matched[rows, shown[rows]]]
+        self._right = rows, shown[rows]
+        absent = [[text not in look.present for text in texts] for look in looks]
+        self._absent = np.array(absent, dtype=np.bool_).reshape(-1, len(texts))
+
+    def right(self, thresholds: Thresholds) -> FloatArray:
+        """Return the scores of boxes with the name of what they show."""
+        rows, columns = self._right
+        return thresholds.candidate_scores(self._scores[rows, columns], self._confidence[rows])
+
+    def wrong(self, thresholds: Thresholds) -> FloatArray:
+        """Return the highest score of each text that nothing in an image answers to; -inf without a box."""
+        best = np.full(self._absent.shape, -np.inf)
+        np.maximum.at(best, self._image, thresholds.candidate_scores(self._scores, self._confidence))
+        return np.asarray(best[self._absent])
 
 
 def _landmark_rows(
-    looks: Sequence[Look], columns: list[int], names: list[str], thresholds: Thresholds
+    looks: Sequence[Look], texts: Sequence[str], names: list[str], known: Sequence[str], thresholds: Thresholds
 ) -> tuple[FloatArray, NDArray[np.intp]]:
-    """Return the scores (n, m) of ``unknown`` boxes with the landmarks' names, and the index of the right one or -1."""
-    rows, truth = [np.empty((0, len(columns)))], []
-    for look in looks:
-        matched = look.matched(thresholds)
-        for k, shown in enumerate(look.shows):
-            if columns and matched[k, columns].all():
-                rows.append(look.scores[k, columns][None])
-                truth.append(names.index(shown) if shown in names else -1)
-    return np.concatenate(rows), np.array(truth, dtype=np.intp)
+    """Return the scores (n, m) of boxes told by matching with the landmarks' names, and the index of the right or -1.
+
+    The names of known landmarks have -inf with boxes that the detector calls ``unknown``.
+    """
+    classes = {key(name) for name in known}
+    columns, hidden = [texts.index(name) for name in names], [key(name) in classes for name in names]
+    told = [
+        (look.scores[k, columns], label == UNKNOWN_CLASS, shown)
+        for look in looks
+        for k, (shown, label) in enumerate(zip(look.shows, look.labels, strict=True))
+        if columns and thresholds.is_unknown(label, float(look.confidence[k]))
+    ]
+    rows = np.concatenate([np.empty((0, len(columns))), *(row[None] for row, _, _ in told)])
+    unnamed = np.array([is_unnamed for _, is_unnamed, _ in told], dtype=np.bool_)
+    rows[unnamed[:, None] & np.array(hidden, dtype=np.bool_)] = -np.inf
+    truth = np.array([names.index(shown) if shown in names else -1 for _, _, shown in told], dtype=np.intp)
+    truth[np.isneginf(rows[np.arange(len(truth)), truth])] = -1
+    return rows, truth
 
 
 def _sure_of_known(looks: Sequence[Look]) -> float:
@@ -248,6 +284,6 @@ def calibrated(
     for look in look_at(eyes, images, indices, texts):
         looks.append(look)
         progress(len(looks), len(indices))
-    known = {key(name) for name in eyes.classes or ()}
-    told = [name for name in landmarks if key(name) not in known]
-    return calibrate(looks, texts, told, false_alarms=false_alarms, detection=detection, relative=relative)
+    return calibrate(
+        looks, texts, landmarks, eyes.classes or (), false_alarms=false_alarms, detection=detection, relative=relative
+    )

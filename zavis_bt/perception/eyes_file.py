@@ -35,6 +35,7 @@ class _Thresholds(_Entry):
     temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     detection: Annotated[float, Field(ge=0, lt=1)] = 0.0
     known: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    trust: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
 
 
 class _Contrast(_Entry):

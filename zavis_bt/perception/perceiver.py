@@ -15,6 +15,7 @@ from zavis_bt.perception.naming import key, may_name
 from zavis_bt.perception.projection import Located, locate_landmark, locate_object
 from zavis_bt.protocols import Detector, Matcher
 from zavis_bt.types import (
+    UNKNOWN_CLASS,
     Box,
     Candidate,
     Detection,
@@ -44,8 +45,8 @@ class Perceiver:
 
     Deviations from the paper, which matches ``unknown`` boxes only and makes a landmark of each: boxes of a known
     class that the target's text names ("the sofa", "spray bottle" for ``bottle``) are matched with the target, too,
-    as the user may ask for what the detector happens to know; a box whose class the detector is not sure of counts as
-    ``unknown``; what matches the target, matches no landmark's name or
+    as the user may ask for what the detector happens to know; a box whose class the detector is not sure of is told by
+    matching with the names of all landmarks; what matches the target, matches no landmark's name or
     is small is no landmark, so that mugs do not become desks; of boxes that show the same thing one is kept, of a
     known and an ``unknown`` one the known.
     """
@@ -80,6 +81,7 @@ class Perceiver:
         self._matcher = matcher
         self._known = {key(name): name for name in known}
         self._unknown = tuple(dict.fromkeys(unknown))
+        self._landmarks = tuple(dict.fromkeys((*self._unknown, *known)))
         self._thresholds = thresholds or Thresholds()
         self._min_landmark_size = min_landmark_size
 
@@ -103,12 +105,12 @@ class Perceiver:
         classed = [(d, box) for d, box in boxes if not self._thresholds.is_unknown(d.label, d.score)]
         known = [(d, box) for d, box in classed if key(d.label) in self._known]
         named = [(d, box) for d, box in classed if may_name(target, d.label)]
-        matched = [box for _, box in (*unknown, *named)]
-        scores = self._match(frame, matched, target)
-        sightings = self._known_sightings(frame, known) + self._unknown_sightings(frame, unknown, scores)
+        matched = [*unknown, *named]
+        names, of_target = self._match(frame, matched, target)
+        sightings = self._known_sightings(frame, known) + self._matched_sightings(frame, unknown, names, of_target)
         distinct = [sighting for sighting, _ in suppress(sightings, lambda pair: pair[1], _SAME)]
         distinct.sort(key=lambda sighting: -sighting.score)
-        return Percept(tuple(distinct), self._candidates(frame, target, matched, scores[:, -1]))
+        return Percept(tuple(distinct), self._candidates(frame, target, [box for _, box in matched], of_target))
 
     def _detect(self, frame: RgbdFrame) -> list[Detection]:
         found = self._detector.detect(frame)
@@ -116,17 +118,27 @@ class Perceiver:
         usable = [one for one in found if math.isfinite(one.score) and not faint(one.label, one.score)]
         return sorted(usable, key=lambda detection: (-detection.score, detection.box))
 
-    def _match(self, frame: RgbdFrame, boxes: Sequence[Box], target: str) -> FloatArray:
-        """Return m of the boxes, (n, L' + 1): the unknown landmarks' names, then the target; -inf for no score."""
-        texts = [*self._unknown, *([target] if target.strip() else [])]
-        scores = np.full((len(boxes), len(self._unknown) + 1), -np.inf)
-        if not boxes or not texts:
-            return scores
-        matched = np.asarray(self._matcher.match(frame, boxes, texts), dtype=np.float64)
-        if matched.shape != (len(boxes), len(texts)):
-            raise InputError(f"matcher: scores of shape {matched.shape} (should be {(len(boxes), len(texts))})")
-        scores[:, : len(texts)] = np.where(np.isfinite(matched), matched, -np.inf)
-        return scores
+    def _match(
+        self, frame: RgbdFrame, found: Sequence[tuple[Detection, Box]], target: str
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the scores of boxes with the landmarks' names (n, L), and their scores as candidates (n,).
+
+        What is not matched has -inf: the names of known landmarks with boxes that the detector calls ``unknown``.
+        """
+        unsure = np.array([detection.label != UNKNOWN_CLASS for detection, _ in found], dtype=np.bool_)
+        names = self._landmarks if unsure.any() else self._unknown
+        texts = [*names, *([target] if target.strip() else [])]
+        scores = np.full((len(found), len(self._landmarks) + 1), -np.inf)
+        if found and texts:
+            matched = np.asarray(self._matcher.match(frame, [box for _, box in found], texts), dtype=np.float64)
+            if matched.shape != (len(found), len(texts)):
+                raise InputError(f"matcher: scores of shape {matched.shape} (should be {(len(found), len(texts))})")
+            usable = np.where(np.isfinite(matched), matched, -np.inf)
+            scores[:, : len(names)] = usable[:, : len(names)]
+            scores[~unsure, len(self._unknown) : -1] = -np.inf
+            scores[:, -1:] = usable[:, len(names) :] if len(texts) > len(names) else -np.inf
+        confidence = np.array([detection.score for detection, _ in found], dtype=np.float64)
+        return scores[:, :-1], self._thresholds.candidate_scores(scores[:, -1], confidence)
 
     def _known_sightings(
         self, frame: RgbdFrame, known: Sequence[tuple[Detection, Box]]
@@ -146,22 +158,25 @@ class Perceiver:
             return ((self._known[key(detection.label)], 1.0),)
         return tuple((name, p / total) for name, p in shares)
 
-    def _unknown_sightings(
-        self, frame: RgbdFrame, unknown: Sequence[tuple[Detection, Box]], scores: FloatArray
+    def _matched_sightings(
+        self,
+        frame: RgbdFrame,
+        found: Sequence[tuple[Detection, Box]],
+        scores: FloatArray,
+        of_target: FloatArray,
     ) -> list[tuple[LandmarkSighting, Box]]:
         sightings = []
-        for (detection, box), row in zip(unknown, scores, strict=False):  # rows of named boxes follow
-            names, target = row[:-1], row[-1]
-            best = names.max(initial=-np.inf)
+        for (detection, box), row, target in zip(found, scores, of_target, strict=False):  # rows of named boxes follow
+            best = row.max(initial=-np.inf)
             if target >= self._thresholds.match or best < self._thresholds.landmark or not math.isfinite(best):
                 continue
             located = locate_landmark(frame, box)
             if located is None or not self._large_enough(frame, box, located):
                 continue
-            distribution = tuple(
-                zip(self._unknown, softmax(names / self._thresholds.temperature).tolist(), strict=True)
-            )
-            sightings.append(_sighting(frame, detection, box, distribution, located))
+            asked = np.isfinite(row)
+            names = [name for name, is_asked in zip(self._landmarks, asked, strict=True) if is_asked]
+            shares = softmax(row[asked] / self._thresholds.temperature)
+            sightings.append(_sighting(frame, detection, box, tuple(zip(names, shares.tolist(), strict=True)), located))
         return sightings
 
     def _large_enough(self, frame: RgbdFrame, box: Box, located: Located) -> bool:
