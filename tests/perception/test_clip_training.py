@@ -18,12 +18,11 @@ from zavis_bt.perception.clip.augment import Augmentation, boxes_near, coarsen, 
 from zavis_bt.perception.clip.backgrounds import draw_backgrounds
 from zavis_bt.perception.clip.captions import EMPTY, NO_COLOUR, CaptionWriter
 from zavis_bt.perception.clip.half_size import can_halve, reading_half_size
-from zavis_bt.perception.clip.keeping import load_state, save_state
 from zavis_bt.perception.clip.loading import build_untrained
 from zavis_bt.perception.clip.loss import contrastive_loss
 from zavis_bt.perception.clip.patches import Patches, collect_patches, cut_patch
 from zavis_bt.perception.clip.settings import MatcherSettings
-from zavis_bt.perception.clip.training import MatcherTraining
+from zavis_bt.perception.clip.training import KEPT, MatcherTraining
 from zavis_bt.perception.clip.vocabulary import Vocabulary
 from zavis_bt.perception.datasets import open_dataset
 
@@ -49,7 +48,7 @@ def patches(tmp_path_factory: pytest.TempPathFactory) -> Patches:
 
 def training(patches: Patches, **changes: object) -> MatcherTraining:
     settings = {"steps": 14, "batch": 12, "more_captions": 4, "learning_rate": 3e-3, **changes}
-    return MatcherTraining(build_untrained("zavis-tiny"), patches, WORDS, MatcherSettings(**settings))  # type: ignore[arg-type]  # mixed
+    return MatcherTraining(build_untrained("zavis-tiny"), patches, WORDS, MatcherSettings(**settings))  # type: ignore[arg-type]  # any field
 
 
 def test_loss_of_one_pair_each_is_infonce() -> None:
@@ -153,9 +152,9 @@ def test_a_few_steps_lower_the_loss_and_write_a_model(patches: Patches) -> None:
 def test_training_goes_on_as_if_never_interrupted(patches: Patches, tmp_path: Path) -> None:
     whole, first = training(patches, steps=4), training(patches, steps=4, save_every=2)
     whole.run(Figures(), lambda state: None)
-    first.run(Figures(), lambda state: save_state(tmp_path, state) if state["done"] == 2 else None)
+    first.run(Figures(), lambda state: KEPT.save(tmp_path, state) if state["done"] == 2 else None)
     again = training(patches, steps=4)
-    again.resume(load_state(tmp_path))
+    again.resume(KEPT.load(tmp_path))
     again.run(Figures(), lambda state: None)
     for name, value in whole.averaged_weights().items():
         torch.testing.assert_close(again.averaged_weights()[name], value, msg=name)
@@ -171,10 +170,10 @@ def test_a_loss_that_is_no_number_ends_with_a_remedy(patches: Patches) -> None:
 
 def test_checkpoints_with_faults_are_told(patches: Patches, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no training"):
-        load_state(tmp_path)
+        KEPT.load(tmp_path)
     (tmp_path / "checkpoint.pt").write_bytes(b"junk")
     with pytest.raises(InputError, match="cannot be read"):
-        load_state(tmp_path)
+        KEPT.load(tmp_path)
     with pytest.raises(InputError, match="of another training"):
         training(patches).resume({"network": {}, "heads": {}})
 

@@ -45,11 +45,10 @@ def train(
     from zavis_bt.cli.detector import check_device
     from zavis_bt.cli.detector_data import open_images
     from zavis_bt.cli.detector_progress import progress_bar
-    from zavis_bt.perception.clip.keeping import load_state, save_state
     from zavis_bt.perception.clip.loading import build_untrained
     from zavis_bt.perception.clip.patches import collect_patches
     from zavis_bt.perception.clip.settings import MatcherSettings
-    from zavis_bt.perception.clip.training import MatcherTraining
+    from zavis_bt.perception.clip.training import KEPT, MatcherTraining
     from zavis_bt.perception.clip.vocabulary import HOUSEHOLD_WORDS, Vocabulary
     from zavis_bt.perception.clip.writing import write_model
     from zavis_bt.perception.detector import TrainingLog
@@ -57,7 +56,7 @@ def train(
     check_device(device)
     if not resume and (out / "checkpoint.pt").exists():
         raise InputError(f"--out: {out} holds a training (go on with --resume, or name a new folder)")
-    state = load_state(out) if resume else None
+    state = KEPT.load(out) if resume else None
     vocabulary = Vocabulary.read(words or HOUSEHOLD_WORDS)
     dataset = open_images(data)
     parts = build_untrained(model, pretrained)
@@ -74,7 +73,7 @@ def train(
         training.resume(state)
     with TrainingLog(out) as log, progress_bar(steps, "training") as progress:
         seconds = math.inf if minutes is None else 60 * minutes
-        training.run(log, lambda state: save_state(out, state), progress, seconds)
+        training.run(log, lambda state: KEPT.save(out, state), progress, seconds)
     facts = _facts(dataset, settings, training.done, patches.names, patches.colour_names)
     write_model(out, model, parts.preprocessing, training.averaged_weights(), facts)
     typer.echo(f"written: {out}")
