@@ -53,10 +53,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--methods", default=",".join(NAMES))
     parser.add_argument("--seeds", default="0,1,2")
-    parser.add_argument("--iterations", type=int, default=400, help="of each row and seed")
+    parser.add_argument("--iterations", type=int, default=600, help="of each row and seed")
     parser.add_argument("--batch", type=int, default=16)
-    parser.add_argument("--warm-up", type=int, default=2200, help="iterations of each part, once for all rows")
-    parser.add_argument("--collages", type=int, default=450, help="iterations of the beginning, once for all rows")
+    parser.add_argument("--warm-up", type=int, default=3000, help="iterations with cut-outs, once for all rows")
+    parser.add_argument("--collages", type=int, default=1200, help="iterations of the beginning, once for all rows")
     parser.add_argument("--widths", default="160,320", help="at which the detector looks at test images, joined [px]")
     parser.add_argument("--images", type=int, help="of the test, from the first; all if not given")
     parser.add_argument("--threads", type=int, default=1)
@@ -82,7 +82,7 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
     network = build_network(config, seed)
     begin(network, data, given)
-    settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed, collages=0.35, views=Views(large=0.25))
+    settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed, collages=0.35, views=Views(large=0.35))
     finish(Training(network, data, settings, labelling(method)), folder)
     facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed, "batch": given.batch}
     facts |= {"iterations": given.iterations, "collages": given.collages, "warm_up": given.warm_up}
@@ -100,7 +100,7 @@ def begin(network: DetectorNetwork, data: DetectionDataset, given: argparse.Name
     if not file.exists():
         taught = build_network(DetectorConfig(DEFAULT_KNOWN, "faster_rcnn"), 0)
         settings = TrainingSettings(
-            given.collages, given.batch, 2e-3, collages=0.85, warm_up=WarmUp(given.warm_up, given.warm_up)
+            given.collages, given.batch, 2e-3, collages=0.85, warm_up=WarmUp(given.warm_up, 3 * given.warm_up)
         )
         finish(Training(taught, data, settings), given.out / "begin")
         torch.save(taught.state_dict(), file)

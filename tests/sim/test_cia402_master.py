@@ -90,7 +90,8 @@ def test_a_set_point_waits_for_the_one_before_or_replaces_it_at_once() -> None:
     with unit() as (_, _body, bus), master(bus, canopen.BaseNode402) as (network, pan, _tilt):
         in_operation(network, pan)
         enable(pan, "PROFILED POSITION")
-        pan.sdo[0x6081].raw, pan.sdo[0x6083].raw, pan.sdo[0x6084].raw = 60 * DEGREE, 900 * DEGREE, 900 * DEGREE
+        slow, gentle = 20 * DEGREE, 40 * DEGREE  # half a second within a degree of the far end, for busy machines
+        pan.sdo[0x6081].raw, pan.sdo[0x6083].raw, pan.sdo[0x6084].raw = slow, gentle, gentle
         pan.rpdo[1]["Target position"].raw = 20 * DEGREE
         start_move(pan, 20 * DEGREE)
         pan.rpdo[1]["Target position"].raw = 5 * DEGREE

@@ -32,11 +32,11 @@ _SIDE, _LEAST_SIDE, _WIDTH = 64, 20.0, 320  # of cut-outs, of things in the full
 class WarmUp:
     """How the backbone is prepared."""
 
-    iterations: int = 2200
+    iterations: int = 3000
     """With cut-outs, backbone alone."""
-    box_iterations: int = 2200
+    box_iterations: int = 9000
     """With boxes in views of many known things, backbone and box head."""
-    batch: int = 64
+    batch: int = 128
     """Cut-outs an iteration."""
     box_batch: int = 8
     """Views an iteration."""
@@ -49,7 +49,7 @@ def warm_up(network: DetectorNetwork, dataset: DetectionDataset, settings: WarmU
     assert isinstance(network.body, TinyBody)
     known = network.config.known
     warm_up_body(network.body, network.normalised, dataset, known, settings, seed)
-    views = Views(mosaic=1.0, grids=(2, 3, 4))
+    views = Views(mosaic=1.0, grids=(1, 2, 3, 4), large=0.3)
     size, count = settings.box_batch, settings.box_iterations
     batches = Batches(dataset, known, views=views, size=size, count=count, seed=seed + 100)
     warm_up_boxes(network, batches, settings.box_learning_rate, seed)
