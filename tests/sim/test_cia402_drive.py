@@ -238,3 +238,17 @@ def test_the_data_sheet_says_what_the_dictionary_holds(tmp_path: Path) -> None:
                 variable.default,
                 variable.pdo_mappable,
             )
+
+
+def test_a_set_point_that_waited_stays_acknowledged_until_the_master_takes_its_bit_back(bench: Bench) -> None:
+    bench.enable(1)
+    for target in (2 * DEGREE, 4 * DEGREE):
+        bench.pan.sdo[0x607A].raw = target
+        bench.pan.sdo[0x6040].raw = 0x1F
+        assert bench.pan.sdo[0x6041].raw & 0x1000
+        if target == 2 * DEGREE:
+            bench.pan.sdo[0x6040].raw = 0x0F
+    assert eventually(lambda: bench.pan.sdo[0x6064].raw == 4 * DEGREE)  # the move that waited has long begun
+    assert bench.pan.sdo[0x6041].raw & 0x1000
+    bench.pan.sdo[0x6040].raw = 0x0F
+    assert not bench.pan.sdo[0x6041].raw & 0x1000

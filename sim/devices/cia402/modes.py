@@ -69,6 +69,7 @@ class ProfilePosition(NoMode):
     def __init__(self, servo: Servo) -> None:
         super().__init__(servo)
         self._acknowledged = False
+        self._asked = False  # whether the master's new set-point bit is set
         self._halted = False
         self._target: float | None = None
         self._next: float | None = None
@@ -79,20 +80,24 @@ class ProfilePosition(NoMode):
             self._servo.brake(now, self._servo.value(DECELERATION))
         resumed = self._halted and not word & HALT
         self._halted = bool(word & HALT)
+        self._asked = bool(word & NEW_SET_POINT)
         if word & ~before & NEW_SET_POINT and not self._acknowledged:
             self._accept(now, word)
         elif resumed and self._target is not None:
             self._servo.go_to(now, self._target)
-        if not word & NEW_SET_POINT and self._next is None:
+        if not self._asked and self._next is None:
             self._acknowledged = False
 
     def tick(self, now: float) -> None:
-        """Begin the set-point that waits for the end of the move before."""
+        """Begin the set-point that waits for the end of the move before.
+
+        It stays acknowledged until the master takes its bit back, or the master might never see it.
+        """
         if self._halted or self._next is None or not self._servo.at_rest(now):
             return
         self._begin(now, self._next)
         self._next = None
-        self._acknowledged = False
+        self._acknowledged = self._asked
 
     def status(self, now: float) -> int:
         """Return target reached (at rest, when halted) and set-point acknowledged."""
