@@ -1,16 +1,15 @@
 """Measure how often a name leads to the right box, end to end, and how long a frame takes.
 
-    python -m benchmarks.name_to_box DATA [--detector FILE] [--clip MODEL] [--widths 160 320] [--images 500]
+    python -m benchmarks.name_to_box DATA [--eyes EYES] [--widths 160 320 640] [--images 500]
 
 DATA is a labelled data set (zavis sim frames). For every category in an image, and every colour and category, the
 boxes of the detector are matched with that name; the best one is right if its IoU with a thing of that name is above
 0.5. The columns tell whose fault the rest is:
 
-    best match   of the boxes that a mission would match: unknown ones, those whose class the detector is not sure of,
-                 and those whose class the name speaks of
-    with score   of the same boxes the best by m / T + W ln s: matching score m over the model's temperature T, and the
-                 detector's score s, which says how well a box fits its thing; a part of a mug looks like a mug, too
-    all boxes    the same of all boxes, whatever their label
+    missions     the best candidate of a mission, by m + W ln s: of the boxes that it looks at, unknown ones, those
+                 whose class the detector is not sure of, and those whose class the name speaks of
+    by m alone   of the same boxes the best by the matching score: a part of a mug looks like a mug, too
+    all boxes    as missions, but of all boxes, whatever their label
     annotated    best match of the annotated boxes: the matcher alone
     detector     whether any box at all is right: the detector alone
 """
@@ -23,28 +22,30 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from zavis_bt.perception import Eyes, EyesSettings, open_eyes
 from zavis_bt.perception.calibration import Thresholds
 from zavis_bt.perception.clip import ClipMatcher, ClipModel
 from zavis_bt.perception.datasets import DetectionDataset, open_dataset
 from zavis_bt.perception.detector import NeuralDetector
 from zavis_bt.perception.evaluation import NameRate, NameResult, Query, judge_answers, queries_of
+from zavis_bt.perception.eyes_file import read_eyes
 from zavis_bt.perception.looking import frame_of
 from zavis_bt.perception.models import find_weights
 from zavis_bt.perception.naming import may_name
 from zavis_bt.perception.neural import find_clip
-from zavis_bt.perception.several_scales import SeveralScales
 from zavis_bt.types import Box, Detection
 
-ROWS = ("best match", "with score", "all boxes", "annotated", "detector")
+ROWS = ("missions", "by m alone", "all boxes", "annotated", "detector")
 SMALL_FRAME = 160  # width of the frames that are timed [px]
 WARM_UP = 5  # frames
+THREADS_TIMED = (1, 2)
 
 
 @dataclass
@@ -58,25 +59,23 @@ class Answers:
 def main() -> None:
     options = parsed()
     dataset = open_dataset(options.data)
-    weights = find_weights(options.detector)
-    detectors = {width: loaded(weights, width, options) for width in options.widths}
-    architecture, pretrained, _ = find_clip(options.clip)
-    matcher = ClipMatcher(ClipModel.load(architecture, pretrained))
-    torch.set_num_threads(options.threads)
+    eyes = opened(options)
     indices = np.linspace(0, len(dataset) - 1, min(options.images, len(dataset))).round().astype(int).tolist()
     answers = Answers()
     for index in indices:
-        ask(answers, dataset, index, SeveralScales(detectors), matcher, options)
+        ask(answers, dataset, index, eyes)
     results = {row: judge_answers(answers.queries, boxes) for row, boxes in answers.boxes.items()}
     note = " (rendered pixels)" if dataset.rendered else ""
     print(f"{dataset.name}: {len(indices)} images, {len(answers.queries)} names{note}\n")
     print_results(results)
-    first = detectors[options.widths[0]]
-    times = {threads: timed(dataset, indices[: options.timed], first, matcher, threads) for threads in (1, 2)}
+    detector = NeuralDetector.load(find_weights(eyes.about["detector"]), width=SMALL_FRAME)
+    architecture, pretrained, _ = find_clip(eyes.about["clip"])
+    matcher = ClipMatcher(ClipModel.load(architecture, pretrained))
+    times = {threads: timed(dataset, indices[: options.timed], detector, matcher, threads) for threads in THREADS_TIMED}
     print_times(times)
     if options.out is not None:
-        told = {"data": dataset.name, "rendered": dataset.rendered, "widths": options.widths}
-        told |= {"detector": options.detector, "clip": options.clip, "weight": options.weight}
+        told = {"data": dataset.name, "rendered": dataset.rendered, "eyes": dict(eyes.about)}
+        told |= {"thresholds": asdict(eyes.thresholds)}
         rates = {row: asdict(result) for row, result in results.items()}
         options.out.write_text(json.dumps({**told, "names": rates, "milliseconds": times}, indent=1))
 
@@ -84,56 +83,43 @@ def main() -> None:
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data")
-    parser.add_argument("--detector", default="zavis-tiny-detector")
-    parser.add_argument("--clip", default="zavis-tiny")
+    parser.add_argument("--eyes", default="neural", help="neural, or an eyes file")
+    parser.add_argument("--widths", type=int, nargs="+", help="the detector looks at, joined [px]; the eyes' own")
     parser.add_argument("--images", type=int, default=500, help="at even distances")
-    parser.add_argument("--widths", type=int, nargs="+", default=[160, 320], help="the detector looks at, joined [px]")
-    parser.add_argument("--unknown-score", type=float, help="least score of unknown things; the file's if not given")
-    parser.add_argument("--unknown-nms", type=float, help="IoU above which of two unknown boxes the worse goes")
-    parser.add_argument("--known", type=float, default=Thresholds().known, help="sure of a class from this score")
-    parser.add_argument("--weight", type=float, default=6.0, help="W, of the detector's score")
     parser.add_argument("--timed", type=int, default=100, help="frames of 160×120")
     parser.add_argument("--threads", type=int, default=1, help="while names are judged")
     parser.add_argument("--out", type=Path)
     return parser.parse_args()
 
 
-def loaded(weights: Path, width: int, options: argparse.Namespace) -> NeuralDetector:
-    detector = NeuralDetector.load(weights, width=width)
-    changes = {"unknown_score": options.unknown_score, "unknown_nms": options.unknown_nms}
-    wanted = {name: value for name, value in changes.items() if value is not None}
-    detector.network.config = detector.network.config.with_choice(**wanted)
-    return detector
+def opened(options: argparse.Namespace) -> Eyes:
+    name, settings = "neural", EyesSettings()
+    if options.eyes != name:
+        name, settings = read_eyes(Path(options.eyes))
+    widths = settings.widths if options.widths is None else tuple(options.widths)
+    return open_eyes(name, replace(settings, widths=widths, threads=options.threads))
 
 
-def ask(
-    answers: Answers,
-    dataset: DetectionDataset,
-    index: int,
-    detector: SeveralScales,
-    matcher: ClipMatcher,
-    options: argparse.Namespace,
-) -> None:
+def ask(answers: Answers, dataset: DetectionDataset, index: int, eyes: Eyes) -> None:
     """Answer all queries of an image."""
     queries = queries_of(dataset, [index])
     if not queries:
         return
-    rgb = dataset.image(index)
-    found = detector.detect(frame_of(rgb))
+    frame = frame_of(dataset.image(index))
+    found = list(eyes.detector.detect(frame))
     boxes = [each.box for each in found]
     annotated = [each.box for each in dataset.annotations(index)]
     texts = [query.text for query in queries]
-    scores, exact = (matcher.match_image(rgb, as_array(each), texts) for each in (boxes, annotated))
-    trust = options.weight * np.log([max(each.score, 1e-6) for each in found])
-    thresholds = Thresholds(known=options.known)
+    scores, exact = (np.asarray(eyes.matcher.match(frame, each, texts)) for each in (boxes, annotated))
+    limits = eyes.thresholds
+    weighed = limits.candidate_scores(scores, np.array([each.score for each in found]))
     for k, query in enumerate(queries):
         answers.queries.append(query)
-        matched = [is_matched(each, query.text, thresholds) for each in found]
-        weighed = scores[:, k] * matcher.model.logit_scale / 100 + trust
+        matched = [is_matched(each, query.text, limits) for each in found]
         chosen = (
+            best(boxes, weighed[:, k], matched),
             best(boxes, scores[:, k], matched),
-            best(boxes, weighed, matched),
-            best(boxes, weighed),
+            best(boxes, weighed[:, k]),
             best(annotated, exact[:, k]),
             next((box for box in boxes if query.verdict(box)), None),
         )
@@ -141,8 +127,10 @@ def ask(
             answers.boxes[row].append(box)
 
 
-def is_matched(found: Detection, text: str, thresholds: Thresholds) -> bool:
-    return thresholds.is_unknown(found.label, found.score) or may_name(text, found.label)
+def is_matched(found: Detection, text: str, limits: Thresholds) -> bool:
+    if limits.is_faint(found.label, found.score):
+        return False
+    return limits.is_unknown(found.label, found.score) or may_name(text, found.label)
 
 
 def best(boxes: Sequence[Box], scores: NDArray[np.floating], mask: Sequence[bool] | None = None) -> Box | None:
