@@ -51,7 +51,11 @@ def train(
         typer.Option("--collages/--no-collages", help="Begin with collages of known things; tiny backbones do."),
     ] = None,
     warm_up: Annotated[
-        int, typer.Option(min=0, help="Iterations in which a tiny detector first learns to tell things; three times as many with boxes.")
+        int,
+        typer.Option(
+            min=0,
+            help="Iterations in which a tiny detector first learns to tell things; three times as many with boxes.",
+        ),
     ] = 0,
 ) -> None:
     """Train a detector on labelled images; an interrupted training goes on with --resume."""

@@ -106,8 +106,11 @@ class Perceiver:
         known = [(d, box) for d, box in classed if key(d.label) in self._known]
         named = [(d, box) for d, box in classed if may_name(target, d.label)]
         matched = [*unknown, *named]
-        names, of_target = self._match(frame, matched, target)
-        sightings = self._known_sightings(frame, known) + self._matched_sightings(frame, unknown, names, of_target)
+        names = self._landmarks if any(d.label != UNKNOWN_CLASS for d, _ in unknown) else self._unknown
+        scores = self._match(frame, [box for _, box in matched], [*names, *([target] if target.strip() else [])])
+        confidence = np.array([detection.score for detection, _ in matched], dtype=np.float64)
+        of_target = self._thresholds.candidate_scores(scores[:, len(names) :].max(axis=1, initial=-np.inf), confidence)
+        sightings = self._known_sightings(frame, known) + self._matched_sightings(frame, unknown, scores, of_target)
         distinct = [sighting for sighting, _ in suppress(sightings, lambda pair: pair[1], _SAME)]
         distinct.sort(key=lambda sighting: -sighting.score)
         return Percept(tuple(distinct), self._candidates(frame, target, [box for _, box in matched], of_target))
@@ -118,27 +121,14 @@ class Perceiver:
         usable = [one for one in found if math.isfinite(one.score) and not faint(one.label, one.score)]
         return sorted(usable, key=lambda detection: (-detection.score, detection.box))
 
-    def _match(
-        self, frame: RgbdFrame, found: Sequence[tuple[Detection, Box]], target: str
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return the scores of boxes with the landmarks' names (n, L), and their scores as candidates (n,).
-
-        What is not matched has -inf: the names of known landmarks with boxes that the detector calls ``unknown``.
-        """
-        unsure = np.array([detection.label != UNKNOWN_CLASS for detection, _ in found], dtype=np.bool_)
-        names = self._landmarks if unsure.any() else self._unknown
-        texts = [*names, *([target] if target.strip() else [])]
-        scores = np.full((len(found), len(self._landmarks) + 1), -np.inf)
-        if found and texts:
-            matched = np.asarray(self._matcher.match(frame, [box for _, box in found], texts), dtype=np.float64)
-            if matched.shape != (len(found), len(texts)):
-                raise InputError(f"matcher: scores of shape {matched.shape} (should be {(len(found), len(texts))})")
-            usable = np.where(np.isfinite(matched), matched, -np.inf)
-            scores[:, : len(names)] = usable[:, : len(names)]
-            scores[~unsure, len(self._unknown) : -1] = -np.inf
-            scores[:, -1:] = usable[:, len(names) :] if len(texts) > len(names) else -np.inf
-        confidence = np.array([detection.score for detection, _ in found], dtype=np.float64)
-        return scores[:, :-1], self._thresholds.candidate_scores(scores[:, -1], confidence)
+    def _match(self, frame: RgbdFrame, boxes: Sequence[Box], texts: Sequence[str]) -> FloatArray:
+        """Return m of n boxes with m texts, (n, m); -inf for no score."""
+        if not boxes or not texts:
+            return np.empty((len(boxes), len(texts)))
+        scores = np.asarray(self._matcher.match(frame, boxes, texts), dtype=np.float64)
+        if scores.shape != (len(boxes), len(texts)):
+            raise InputError(f"matcher: scores of shape {scores.shape} (should be {(len(boxes), len(texts))})")
+        return np.where(np.isfinite(scores), scores, -np.inf)
 
     def _known_sightings(
         self, frame: RgbdFrame, known: Sequence[tuple[Detection, Box]]
@@ -165,18 +155,26 @@ class Perceiver:
         scores: FloatArray,
         of_target: FloatArray,
     ) -> list[tuple[LandmarkSighting, Box]]:
+        """Return the sightings among boxes told by matching.
+
+        Args:
+            frame: Of the boxes.
+            found: The boxes.
+            scores: Rows of the boxes, then others'; columns of the unknown landmarks' names, the known ones', others.
+            of_target: The same rows' scores as candidates.
+        """
         sightings = []
-        for (detection, box), row, target in zip(found, scores, of_target, strict=False):  # rows of named boxes follow
-            best = row.max(initial=-np.inf)
+        for (detection, box), row, target in zip(found, scores, of_target, strict=False):
+            names = self._unknown if detection.label == UNKNOWN_CLASS else self._landmarks
+            asked = row[: len(names)]
+            best = asked.max(initial=-np.inf)
             if target >= self._thresholds.match or best < self._thresholds.landmark or not math.isfinite(best):
                 continue
             located = locate_landmark(frame, box)
             if located is None or not self._large_enough(frame, box, located):
                 continue
-            asked = np.isfinite(row)
-            names = [name for name, is_asked in zip(self._landmarks, asked, strict=True) if is_asked]
-            shares = softmax(row[asked] / self._thresholds.temperature)
-            sightings.append(_sighting(frame, detection, box, tuple(zip(names, shares.tolist(), strict=True)), located))
+            shares = softmax(asked / self._thresholds.temperature).tolist()
+            sightings.append(_sighting(frame, detection, box, tuple(zip(names, shares, strict=True)), located))
         return sightings
 
     def _large_enough(self, frame: RgbdFrame, box: Box, located: Located) -> bool:
