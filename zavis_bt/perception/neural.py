@@ -44,16 +44,17 @@ def open_eyes(settings: EyesSettings) -> Eyes:
 
 @lru_cache(maxsize=2)
 def _opened(settings: EyesSettings) -> Eyes:
-    from zavis_bt.perception.clip import ClipMatcher, ClipModel
-    from zavis_bt.perception.detector import NeuralDetector
-
-    _prepare(settings)
+    """Make eyes; what is wrong with the settings or the files is told before torch is loaded, which takes seconds."""
     detector_name, clip_name = settings.detector or DETECTOR, settings.clip or CLIP
     file = find_weights(detector_name)
     architecture, pretrained, weights = find_clip(clip_name)
     checksums = {"detector": checksum(file)} | ({"clip": checksum(weights)} if weights else {})
     check_checksums(settings, checksums)
     settings = with_meaning(settings)
+    from zavis_bt.perception.clip import ClipMatcher, ClipModel
+    from zavis_bt.perception.detector import NeuralDetector
+
+    _prepare(settings)
     scales = [NeuralDetector.load(file, device=settings.device, width=width) for width in settings.widths or (None,)]
     detector: Detector = (
         scales[0] if len(scales) == 1 else SeveralScales(dict(zip(settings.widths, scales, strict=True)))
