@@ -16,7 +16,7 @@ from torchvision.ops.feature_pyramid_network import LastLevelMaxPool
 
 from zavis_bt.perception.detector.config import BackboneName
 
-_RATIOS = (0.15, 0.4, 1.0, 2.5, 6.0)  # height over width: umbrellas and brooms lie, or stand
+_RATIOS = (0.4, 1.0, 2.5)
 
 
 @dataclass(frozen=True, slots=True)
