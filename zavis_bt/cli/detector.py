@@ -12,11 +12,13 @@ import typer
 from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
+    from zavis_bt.perception.datasets import DetectionDataset
     from zavis_bt.perception.detector import DetectorConfig
     from zavis_bt.perception.detector.pseudo_labels import Labelling
 
 _CLIP = "zavis-tiny"
 _WEIGHTS_FILE = "detector.safetensors"
+_DECODED = 320  # width of the images that a small detector learns from [px]
 _BOXES = 3  # times as many iterations of warming up with boxes as with cut-outs
 _COLLAGES_FIRST, _COLLAGES = 0.45, 0.35  # shares of the iterations: at the start, and of the rest
 
@@ -64,10 +66,12 @@ def train(
     from zavis_bt.cli.detector_progress import progress_bar
     from zavis_bt.perception.detector import Checkpoint, Training, TrainingLog, TrainingSettings, Views, save_detector
     from zavis_bt.perception.detector.building import FACTS, build_network
+    from zavis_bt.perception.detector.decoded import Decoded, are_of_one_size
+    from zavis_bt.perception.detector.training import check_data
     from zavis_bt.perception.detector.warm_up import WarmUp
 
     config = _config(known, method, backbone, width, pretrained=weights is not None)
-    images = open_images(data)
+    images: DetectionDataset = open_images(data)
     if not resume and (out / "checkpoint.pt").exists():
         raise InputError(f"--out: {out} holds a training (go on with --resume, or name a new folder)")
     before = Checkpoint.load(out) if resume else None
@@ -85,15 +89,20 @@ def train(
         collages=_COLLAGES if crowded else 0.0,
         warm_up=WarmUp(warm_up, _BOXES * warm_up) if warm_up else None,
     )
+    out.mkdir(parents=True, exist_ok=True)
+    check_data(images, config.known)
+    if backbone == "tiny" and are_of_one_size(images):
+        with progress_bar(len(images), "decoding") as progress:
+            images = Decoded(images, out / "images.npy", _DECODED, progress)
     training = Training(network, images, settings, _labelling(method, clip, device), device)
     if before is not None:
         training.resume(before)
     facts = {"data": images.name, "rendered": images.rendered, "images": len(images), "seed": seed}
     facts |= {"iterations": iterations, "batch": batch, "learning_rate": peak, "clip": clip}
-    out.mkdir(parents=True, exist_ok=True)
     (out / FACTS).write_text(json.dumps(facts))
-    with TrainingLog(out) as log, progress_bar(iterations) as progress:
-        training.run(log, lambda state: state.save(out), progress)
+    first = 0 if resume else (1 + _BOXES) * warm_up
+    with TrainingLog(out) as log, progress_bar(first + iterations) as progress:
+        training.run(log, lambda state: state.save(out), lambda done: progress(first + done), progress)
     save_detector(training.network, out / _WEIGHTS_FILE, facts)
     typer.echo(f"written: {out / _WEIGHTS_FILE}")
 

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from zavis_bt.errors import InputError
 from zavis_bt.perception.datasets import Annotation, DetectionDataset
 
 
@@ -21,12 +22,14 @@ class Decoded:
         """Decode all images unless the file is there.
 
         Raises:
-            InputError: An image cannot be read.
+            InputError: An image cannot be read, or the file holds another number of images.
         """
         self._dataset, self._width = dataset, width
         if not file.exists():
             _decode(dataset, file, width, progress)
         self._images = np.load(file, mmap_mode="r")
+        if len(self._images) != len(dataset):
+            raise InputError(f"{file}: holds {len(self._images)} images, not the {len(dataset)} of {dataset.name}")
         self._things = [dataset.annotations(index) for index in range(len(dataset))]
 
     @property
@@ -67,6 +70,11 @@ class Decoded:
     def path(self, index: int) -> str:
         """Return the file of an image."""
         return self._dataset.path(index)
+
+
+def are_of_one_size(dataset: DetectionDataset) -> bool:
+    """Return whether all images have the same width and height, as those of one camera have."""
+    return len({dataset.size(index) for index in range(len(dataset))}) == 1
 
 
 def _decode(dataset: DetectionDataset, file: Path, width: int, progress: Callable[[int], None]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import torch
@@ -14,6 +15,7 @@ from zavis_bt.perception.detector.gaussian import Gaussian
 from zavis_bt.perception.detector.proposals import ProposalNetwork, Target, initialise
 from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.rois import Learnt, Regions, RoiNetwork
+from zavis_bt.perception.precision import mixed_precision
 
 _MEAN, _STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)  # of ImageNet, as torchvision's weights want it
 _TEST_PROPOSALS = {"tiny": 120, "resnet50_fpn": 300, "resnet50_c4": 300}
@@ -40,7 +42,7 @@ class DetectorNetwork(nn.Module):
 
     def forward(self, images: Tensor) -> list[Regions]:
         """Return all boxes that are proposed, with what the network says of them."""
-        features, sizes = self._features(images)
+        features, sizes = self.features(images)
         proposals = self.proposals.propose(images, sizes, features)
         found: list[Regions] = self.rois(features, proposals.boxes, sizes)
         return found
@@ -65,7 +67,7 @@ class DetectorNetwork(nn.Module):
             labelling: Where labels of unknown things come from.
             progress: Share of the training that is behind.
         """
-        features, sizes = self._features(images)
+        features, sizes = self.features(images)
         proposals = self.proposals.propose(images, sizes, features)
         if labelling is not None and labelling.trains_proposals:
             labelling(images, proposals, targets, progress)
@@ -82,6 +84,9 @@ class DetectorNetwork(nn.Module):
         """Return images as the backbone reads them."""
         return (images - self.mean) / self.std
 
-    def _features(self, images: Tensor) -> tuple[dict[str, Tensor], list[tuple[int, int]]]:
-        features = self.body(self.normalised(images))
+    def features(self, images: Tensor) -> tuple[dict[str, Tensor], list[tuple[int, int]]]:
+        """Return the backbone's maps, and height and width of each image."""
+        with mixed_precision(images.device.type) if self.training else nullcontext():
+            maps = self.body(self.normalised(images))
+        features = {name: each.float() for name, each in maps.items()}  # boxes are too fine for sixteen bits
         return features, [(images.shape[2], images.shape[3])] * len(images)

@@ -24,7 +24,6 @@ from zavis_bt.perception.detector.proposals import Target
 from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.training_log import TrainingLog
 from zavis_bt.perception.detector.warm_up import WarmUp, warm_up
-from zavis_bt.perception.precision import mixed_precision
 
 _FIT_BATCHES = 40  # of the training's, for the distributions that tell unknown things
 _CLIP_NORM = 5.0
@@ -84,7 +83,11 @@ class Training:
         self._batches = Course(self._views, collages, first=first, share=share, seed=seed)
 
     def run(
-        self, log: TrainingLog, save: Callable[[Checkpoint], None], progress: Callable[[int], None] = lambda done: None
+        self,
+        log: TrainingLog,
+        save: Callable[[Checkpoint], None],
+        progress: Callable[[int], None] = lambda done: None,
+        warming_up: Callable[[int], None] = lambda done: None,
     ) -> None:
         """Train to the end and fit the distributions that tell unknown things.
 
@@ -92,12 +95,13 @@ class Training:
             log: Told the losses of each iteration.
             save: Told the state now and then, and at the end.
             progress: Told how many iterations are behind.
+            warming_up: Told how many iterations of the warm-up are behind.
 
         Raises:
             InputError: The loss is no longer a number, or an image cannot be read.
         """
         if self.done == 0 and self.settings.warm_up is not None:
-            self._warm_up(self.settings.warm_up)
+            self._warm_up(self.settings.warm_up, warming_up)
         for batch in self._remaining():
             losses = self._step(batch)
             self.done += 1
@@ -111,10 +115,10 @@ class Training:
             fit(self.network, batches, self._labelling)
         save(self.state())
 
-    def _warm_up(self, settings: WarmUp) -> None:
+    def _warm_up(self, settings: WarmUp, progress: Callable[[int], None]) -> None:
         if isinstance(self.network.body, TinyBody):
             with _repeatable(self.settings.seed, -1):
-                warm_up(self.network, self._dataset, settings, self.settings.seed)
+                warm_up(self.network, self._dataset, settings, self.settings.seed, progress)
 
     def state(self) -> Checkpoint:
         """Return all that is needed to go on."""
@@ -151,7 +155,7 @@ class Training:
         images, targets, is_collage = self._moved(batch)
         labelling = None if is_collage else self._labelling
         progress = self.done / self.settings.iterations
-        with _repeatable(self.settings.seed, self.done), mixed_precision(self._device):
+        with _repeatable(self.settings.seed, self.done):
             losses = self.network.learn(images, targets, labelling, progress).losses
             total = torch.stack(list(losses.values())).sum()
         self._check(total)

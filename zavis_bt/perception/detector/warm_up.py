@@ -44,15 +44,31 @@ class WarmUp:
     box_learning_rate: float = 2e-3
 
 
-def warm_up(network: DetectorNetwork, dataset: DetectionDataset, settings: WarmUp, seed: int) -> None:
-    """Teach a network with a small backbone to tell known things: cut out, then by their boxes."""
+def warm_up(
+    network: DetectorNetwork,
+    dataset: DetectionDataset,
+    settings: WarmUp,
+    seed: int,
+    progress: Callable[[int], None] = lambda done: None,
+) -> None:
+    """Teach a network with a small backbone to tell known things: cut out, then by their boxes.
+
+    Args:
+        network: Changed.
+        dataset: Images with known things.
+        settings: How long.
+        seed: Of all draws.
+        progress: Told how many iterations of both kinds are done.
+    """
     assert isinstance(network.body, TinyBody)
     known = network.config.known
-    warm_up_body(network.body, network.normalised, dataset, known, settings, seed)
+    warm_up_body(network.body, network.normalised, dataset, known, settings, seed, progress)
     views = Views(mosaic=1.0, grids=(1, 2, 3, 4), large=0.3)
     size, count = settings.box_batch, settings.box_iterations
     batches = Batches(dataset, known, views=views, size=size, count=count, seed=seed + 100)
-    warm_up_boxes(network, batches, settings.box_learning_rate, seed)
+    warm_up_boxes(
+        network, batches, settings.box_learning_rate, seed, lambda done, _: progress(settings.iterations + done)
+    )
 
 
 def warm_up_body(
@@ -140,13 +156,10 @@ def warm_up_boxes(
                 group["lr"] = rate * _rate(done, len(batches))
             images, targets = batches[done]
             images, targets = images.to(device), [each.to(device) for each in targets]
-            with mixed_precision(device.type):
-                features = network.body(network.normalised(images.contiguous(memory_format=torch.channels_last)))
-            sizes = [(images.shape[2], images.shape[3])] * len(images)
+            features, sizes = network.features(images.contiguous(memory_format=torch.channels_last))
             near = [clip_boxes_to_image(_jittered(each.boxes), sizes[0]) for each in targets]
             if not any(map(len, near)):
                 continue
-            features = {name: each.float() for name, each in features.items()}
             loss = torch.stack(list(network.rois.learn(features, near, targets, sizes).losses.values())).sum()
             loss.backward()
             nn.utils.clip_grad_norm_(parameters, 5.0)
