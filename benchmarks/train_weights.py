@@ -54,7 +54,7 @@ def main() -> None:
     eyes = given.out / "zavis-tiny.eyes.yaml"
     if given.install:
         install(matcher, detector)
-        measure = ("perception", "calibrate", given.out / "val", "--images", 150, "--widths", "320,640")
+        measure = ("perception", "calibrate", given.out / "val", "--images", 150, "--widths", "160,320,640")
         zavis(*measure, "--out", WEIGHTS / eyes.name)
         seal_weights()
 

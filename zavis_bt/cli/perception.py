@@ -183,7 +183,7 @@ def _widths(text: str | None) -> tuple[int, ...]:
     try:
         return () if text is None else tuple(int(part) for part in text.split(","))
     except ValueError:
-        raise InputError(f"--widths: '{text}' are no whole numbers (e.g. 320,640)") from None
+        raise InputError(f"--widths: '{text}' are no whole numbers (e.g. 160,320,640)") from None
 
 
 def _names(text: str) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from zavis_bt.perception.boxes import suppress
 from zavis_bt.protocols import Detector
 from zavis_bt.types import Detection, RgbdFrame
 
-_SAME = 0.6  # boxes that overlap more are of one thing [IoU]
+_SAME = 0.5  # boxes that overlap more are of one thing [IoU]
 
 
 class SeveralScales:
