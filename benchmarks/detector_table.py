@@ -2,8 +2,9 @@
 
     python benchmarks/detector_table.py TRAIN TEST --out DIR [--methods zavis,ore] [--seeds 0,1,2]
 
-One JSON file a row and seed; what is there is not done again, an interrupted training goes on. Several processes may
-work in one folder, each on methods or seeds of its own. With nothing left to do it only prints the table.
+One JSON file a row and seed; what is there is not done again, an interrupted training goes on. A row that is trained
+but has no JSON file is only judged. Several processes may work in one folder, each on methods or seeds of its own. With
+nothing left to do it only prints the table.
 """
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ def main() -> None:
     parser.add_argument("--warm-up", type=int, default=3000, help="iterations with cut-outs, once for all rows")
     parser.add_argument("--collages", type=int, default=1200, help="iterations of the beginning, once for all rows")
     parser.add_argument("--widths", default="160,320", help="at which the detector looks at test images, joined [px]")
+    parser.add_argument("--unknown-score", type=float, default=0.2, help="least score of unknown things")
     parser.add_argument("--images", type=int, help="of the test, from the first; all if not given")
     parser.add_argument("--threads", type=int, default=1)
     given = parser.parse_args()
@@ -72,13 +74,16 @@ def main() -> None:
             if result.exists():
                 continue
             file = trained(method, seed, train, given.out / f"{method}-{seed}", given)
-            judged = evaluated(file, test, widths, given.images)
+            judged = evaluated(file, test, widths, given)
             result.write_text(json.dumps({"iterations": given.iterations, "widths": widths, **judged.as_dict()}))
     print(table(given.out))
 
 
 def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given: argparse.Namespace) -> Path:
     """Train, or go on training, one detector, and return its weights file."""
+    file = folder / "detector.safetensors"
+    if file.exists():
+        return file
     config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
     network = build_network(config, seed)
     begin(network, data, given)
@@ -86,8 +91,8 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     finish(Training(network, data, settings, labelling(method)), folder)
     facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed, "batch": given.batch}
     facts |= {"iterations": given.iterations, "collages": given.collages, "warm_up": given.warm_up}
-    save_detector(network, folder / "detector.safetensors", facts)
-    return folder / "detector.safetensors"
+    save_detector(network, file, facts)
+    return file
 
 
 def begin(network: DetectorNetwork, data: DetectionDataset, given: argparse.Namespace) -> None:
@@ -128,10 +133,13 @@ def labelling(method: str) -> Labelling | None:
     return ProposalLabelling() if method == "ore" else None
 
 
-def evaluated(file: Path, test: DetectionDataset, widths: list[int], images: int | None) -> OpenSetResult:
+def evaluated(file: Path, test: DetectionDataset, widths: list[int], given: argparse.Namespace) -> OpenSetResult:
     """Judge a detector that looks at each image at one or more widths."""
-    joined = SeveralScales({width: NeuralDetector.load(file, width=width) for width in widths})
-    width, chosen = max(widths), range(len(test))[:images]
+    detectors = {width: NeuralDetector.load(file, width=width) for width in widths}
+    for each in detectors.values():
+        each.network.config = each.network.config.with_choice(unknown_score=given.unknown_score)
+    joined = SeveralScales(detectors)
+    width, chosen = max(widths), range(len(test))[: given.images]
 
     def predict(rgb: NDArray[np.uint8]) -> list[Detection]:
         camera = CameraIntrinsics.from_fov(rgb.shape[1], rgb.shape[0], 1.0)
