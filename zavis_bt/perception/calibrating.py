@@ -5,7 +5,7 @@ Eyes look at labelled images as they would in a mission.
 - m_t: a text that nothing in the image answers to shall bring a candidate in at most a given share of the images.
 - The landmarks' threshold sets boxes of furniture that goes by a landmark's name apart from all others, by the
   greatest sum of both shares told rightly (Youden's index).
-- The trust in the detector's confidence is the one with which most right pairs reach m_t.
+- The trust in the detector's confidence is the one with which the first candidate of an image is most often right.
 - Scores may be relative to those of other texts (`Contrast`), which helps some models much and others not at all. The
   texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
 - The least confidence of a known landmark sets boxes that show their class apart from those that do not, likewise.
@@ -103,7 +103,7 @@ def calibrate(
     first = Thresholds(detection=detection, known=round(_sure_of_known(looks), 3))
     pairs = _Pairs(looks, texts, first)
     tried = [_as_candidates(pairs, replace(first, trust=trust), false_alarms) for trust in _TRUSTS]
-    first = max(tried, key=lambda each: float((pairs.right(each) >= each.match).mean()))
+    first = max(tried, key=pairs.told_first)
     right, wrong = pairs.right(first), pairs.wrong(first)
     names = [text for text in texts if key(text) in {key(name) for name in landmarks}]
     rows, truth = _landmark_rows(looks, texts, names, known, first)
@@ -188,6 +188,15 @@ class _Pairs:
         """Return the scores of boxes with the name of what they show."""
         rows, columns = self._right
         return thresholds.candidate_scores(self._scores[rows, columns], self._confidence[rows])
+
+    def told_first(self, thresholds: Thresholds) -> int:
+        """Return how many names of what an image shows bring it as their first candidate."""
+        scores = thresholds.candidate_scores(self._scores, self._confidence)
+        rows, columns = self._right
+        best = np.full(self._absent.shape, -np.inf)
+        np.maximum.at(best, self._image, scores)
+        first = scores[rows, columns] >= np.maximum(best[self._image[rows], columns], thresholds.match)
+        return len(np.unique(np.stack((self._image[rows], columns), axis=1)[first], axis=0))
 
     def wrong(self, thresholds: Thresholds) -> FloatArray:
         """Return the highest score of each text that nothing in an image answers to; -inf without a box."""
