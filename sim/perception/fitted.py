@@ -12,28 +12,28 @@ from sim.perception.curves import DetectorSettings, MatcherSettings
 
 FITTED_TO_NETWORKS = (
     DetectorSettings(
-        ceiling=0.98,
-        half_size=23.3,
-        slope=1.02,
-        short_side=(0.5, 6.7),
-        visible=(0.05, 0.55),
+        ceiling=0.95,
+        half_size=5.3,
+        slope=0.54,
+        short_side=(0.5, 6.2),
+        visible=(0.05, 0.48),
         visible_furniture=(0.02, 0.03),
-        false_positives=8.5,
-        most_false=16,
-        parts=0.27,
+        false_positives=3.7,
+        most_false=8,
+        parts=0.34,
         jitter=0.1,
-        known_as_unknown=0.97,
-        unknown_as_known=0.04,
+        known_as_unknown=0.93,
+        unknown_as_known=0.03,
     ),
     MatcherSettings(
-        match=26.6,
-        background=18.1,
+        match=28.6,
+        background=19.4,
         background_spread=3.6,
-        instance_spread=3.3,
-        view_spread=2.5,
-        small_loss=0.9,
+        instance_spread=1.7,
+        view_spread=3.5,
+        small_loss=0.73,
     ),
 )
 """Of detector and matcher."""
-FITTED_THRESHOLDS = MappingProxyType({"match": 29.0, "landmark": 28.7, "temperature": 1.26})
+FITTED_THRESHOLDS = MappingProxyType({"match": 29.0, "landmark": 32.4, "temperature": 1.05})
 """That belong to them: as many texts pass as pass those of the networks."""
