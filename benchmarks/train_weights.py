@@ -20,7 +20,16 @@ from zavis_bt.perception.models import WEIGHTS
 from zavis_bt.perception.models.seal import seal_weights
 
 NEVER_DRAWN = (
-    *("kettle", "guitar", "radio", "glove", "dumbbell", "toy car", "fan", "watering can", "pear", "headphones"),
+    "kettle",
+    "guitar",
+    "radio",
+    "glove",
+    "dumbbell",
+    "toy car",
+    "fan",
+    "watering can",
+    "pear",
+    "headphones",
 )
 """Left out of the training images, to see what becomes of things that no network was shown."""
 RARE = {
@@ -34,7 +43,7 @@ RARE = {
     "laundry basket": 1,
 }
 """So many times more often than others: they are small, or mostly hidden or cut off."""
-VAL, TEST = 600, 2000  # images
+VAL, TEST = 40, 12  # for so many images of training one
 
 
 def main() -> None:
@@ -51,11 +60,10 @@ def main() -> None:
     given.out.mkdir(parents=True, exist_ok=True)
     draw(given)
     matcher, detector = train_matcher(given), train_detector(given)
-    eyes = given.out / "zavis-tiny.eyes.yaml"
     if given.install:
         install(matcher, detector)
-        measure = ("perception", "calibrate", given.out / "val", "--images", 150, "--widths", "160,320,640")
-        zavis(*measure, "--out", WEIGHTS / eyes.name)
+        measure = ("perception", "calibrate", given.out / "val", "--images", 250, "--widths", "160,320,640")
+        zavis(*measure, "--out", WEIGHTS / "zavis-tiny.eyes.yaml")
         seal_weights()
 
 
@@ -67,8 +75,8 @@ def draw(given: argparse.Namespace) -> None:
     known = [word for name in DEFAULT_KNOWN for word in ("--also", name)]
     for folder, count, seed, words in (
         ("train", given.frames, given.seed, without + also),
-        ("val", VAL, 2, known),
-        ("test", TEST, 3, known),
+        ("val", given.frames // VAL, 2, known),
+        ("test", given.frames // TEST, 3, known),
     ):
         if not (given.out / folder / "annotations.json").exists():
             shutil.rmtree(given.out / folder, ignore_errors=True)
@@ -108,7 +116,7 @@ def install(matcher: Path, detector: Path) -> None:
 
 def zavis(*words: object) -> None:
     command = [sys.executable, "-m", "zavis_bt", *map(str, words)]
-    print("zavis", *[word for word in command[3:11]], "…" if len(command) > 11 else "", flush=True)
+    print("zavis", *command[3:11], *["…"] * (len(command) > 11), flush=True)
     subprocess.run(command, check=True)
 
 

@@ -12,7 +12,7 @@ from detector_scenes import KNOWN, write_coco_scenes
 from zavis_bt.perception.datasets import open_dataset
 from zavis_bt.perception.detector import DetectorConfig, Training, TrainingLog, TrainingSettings, Views
 from zavis_bt.perception.detector.building import build_network
-from zavis_bt.perception.precision import mixed_precision
+from zavis_bt.perception.training.precision import mixed_precision
 
 
 def a_processor(monkeypatch: pytest.MonkeyPatch, *features: str) -> None:

@@ -23,8 +23,8 @@ from zavis_bt.perception.clip.loss import contrastive_loss
 from zavis_bt.perception.clip.patches import Patches
 from zavis_bt.perception.clip.settings import MatcherSettings
 from zavis_bt.perception.clip.vocabulary import Vocabulary
-from zavis_bt.perception.kept_state import KeptState
-from zavis_bt.perception.precision import mixed_precision
+from zavis_bt.perception.training.kept_state import KeptState
+from zavis_bt.perception.training.precision import mixed_precision
 
 KEPT = KeptState("zavis-matcher-training/1", "zavis matcher train")
 _MOST_SCALE = math.log(100)  # of the cosines, as in CLIP

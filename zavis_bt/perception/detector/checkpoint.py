@@ -9,7 +9,7 @@ from typing import Any
 from torch import Tensor
 
 from zavis_bt.perception.detector.config import DetectorConfig
-from zavis_bt.perception.kept_state import KeptState
+from zavis_bt.perception.training.kept_state import KeptState
 
 _KEPT = KeptState("zavis-detector-training/1", "zavis detector train")
 

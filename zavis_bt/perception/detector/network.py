@@ -15,7 +15,7 @@ from zavis_bt.perception.detector.gaussian import Gaussian
 from zavis_bt.perception.detector.proposals import ProposalNetwork, Target, initialise
 from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.rois import Learnt, Regions, RoiNetwork
-from zavis_bt.perception.precision import mixed_precision
+from zavis_bt.perception.training.precision import mixed_precision
 
 _MEAN, _STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)  # of ImageNet, as torchvision's weights want it
 _TEST_PROPOSALS = {"tiny": 120, "resnet50_fpn": 300, "resnet50_c4": 300}

@@ -22,7 +22,7 @@ from zavis_bt.perception.datasets import DetectionDataset
 from zavis_bt.perception.detector.backbones import TinyBody
 from zavis_bt.perception.detector.batches import Batches, Views, lit
 from zavis_bt.perception.detector.network import DetectorNetwork
-from zavis_bt.perception.precision import mixed_precision
+from zavis_bt.perception.training.precision import mixed_precision
 
 _SAMPLES = 96  # boxes of a view of many things
 _SIDE, _LEAST_SIDE, _WIDTH = 64, 20.0, 320  # of cut-outs, of things in the full image, of the images that are cut [px]
