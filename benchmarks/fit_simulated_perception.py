@@ -25,7 +25,7 @@ from sim.perception.curves import detection_chance
 from sim.perception.matcher import what_it_shows
 from sim.scene import Scene
 from zavis_bt.bench import load_episodes
-from zavis_bt.cli.bench import _world
+from zavis_bt.cli.bench import world_of
 from zavis_bt.perception import DEFAULT_UNKNOWN_LANDMARKS, Eyes, Thresholds, open_eyes
 from zavis_bt.perception.naming import key
 from zavis_bt.types import UNKNOWN_CLASS, CameraIntrinsics, CameraSpec
@@ -80,7 +80,7 @@ def frames(path: Path, count: int, seed: int) -> Iterator[tuple[SimFrame, list[s
     names = sorted({episode.target for episode in episodes})
     for number in range(count):
         episode = episodes[int(rng.integers(len(episodes)))]
-        world = _world(episode)
+        world = world_of(episode)
         camera = SimCamera(Scene.of(world), SPEC)
         piece = world.furniture[int(rng.integers(len(world.furniture)))]
         poses = [episode.start, *viewpoints(world, piece)]

@@ -110,7 +110,7 @@ def run_episode(choices: dict[str, Choices], task: Task) -> MissionResult:
     from zavis_bt.mission import Task as MissionTask
 
     episode, method = task.episode, choices[task.method]
-    world = _world(episode)
+    world = world_of(episode)
     shortest = episode.shortest_path_length
     if shortest is None:
         shortest = _shortest(episode, world)
@@ -132,7 +132,8 @@ def _empty_world(path: Path) -> World:
     return load_world(path)
 
 
-def _world(episode: Episode) -> World:
+def world_of(episode: Episode) -> World:
+    """Return the world of an episode, with the episode's objects in it."""
     from sim.world import WorldObject
 
     values = (WorldObject(o.id, o.category, o.x, o.y, o.z, o.size, o.on) for o in episode.objects)
