@@ -121,9 +121,9 @@ def rendering() -> None:
     spent = []
     for number in range(10):
         begin = time.process_time()
-        camera.capture(world.starts[number % len(world.starts)], 0.0, 0.0, 0.0).rgb  # noqa: B018  rendering is timed
+        rgb = camera.capture(world.starts[number % len(world.starts)], 0.0, 0.0, 0.0).rgb
         spent.append(1000 * (time.process_time() - begin))
-    print(f"rendering 640 x 480 in the apartment: {statistics.median(spent[1:]):.0f} ms CPU")
+    print(f"rendering {rgb.shape[1]} x {rgb.shape[0]} in the apartment: {statistics.median(spent[1:]):.0f} ms CPU")
 
 
 def looking(pixels: str, looks: float) -> None:

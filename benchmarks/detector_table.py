@@ -34,6 +34,7 @@ from zavis_bt.perception.detector import (
     save_detector,
 )
 from zavis_bt.perception.detector.building import DEFAULT_KNOWN, build_network
+from zavis_bt.perception.detector.config import method_named
 from zavis_bt.perception.detector.decoded import Decoded
 from zavis_bt.perception.detector.pseudo_labels import Labelling
 from zavis_bt.perception.detector.warm_up import WarmUp
@@ -84,7 +85,7 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     file = folder / "detector.safetensors"
     if file.exists():
         return file
-    config = DetectorConfig(DEFAULT_KNOWN, method)  # type: ignore[arg-type]  # from the command line; it checks
+    config = DetectorConfig(DEFAULT_KNOWN, method_named(method))
     network = build_network(config, seed)
     begin(network, data, given)
     settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed, collages=0.35, views=Views(large=0.35))

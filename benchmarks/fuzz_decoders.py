@@ -39,7 +39,7 @@ class Subject(ABC):
     def take(self, data: bytes) -> None:
         """Give it bytes as they would come from the line. Must never raise."""
 
-    def settle(self) -> None:  # noqa: B027  # most decoders have no notion of time
+    def settle(self) -> None:  # noqa: B027  # a hook for the few decoders that time out
         """Let the line be silent for a while."""
 
     @abstractmethod

@@ -14,6 +14,7 @@ from zavis_bt.errors import InputError
 from zavis_bt.perception.detector import DetectorConfig, NeuralDetector, load_detector, save_detector
 from zavis_bt.perception.detector.building import build_network
 from zavis_bt.perception.detector.choosing import choose
+from zavis_bt.perception.detector.config import Method, method_named
 from zavis_bt.perception.detector.mln import Mixture
 from zavis_bt.perception.detector.network import DetectorNetwork
 from zavis_bt.perception.detector.rois import Regions
@@ -23,8 +24,8 @@ KNOWN = ("cup", "sofa", "tv")
 UNKNOWN, BACKGROUND = 3, 4
 
 
-def network(method: str = "zavis", **choice: float) -> DetectorNetwork:
-    config = DetectorConfig(KNOWN, method, mixtures=2)  # type: ignore[arg-type]  # a literal
+def network(method: Method = "zavis", **choice: float) -> DetectorNetwork:
+    config = DetectorConfig(KNOWN, method, mixtures=2)
     return build_network(config.with_choice(**choice), 0).eval()
 
 
@@ -159,4 +160,4 @@ def test_classes_must_make_sense(known: tuple[str, ...]) -> None:
 
 def test_unknown_method_is_told_with_a_proposal() -> None:
     with pytest.raises(InputError, match=r"'zavi' is unknown \(did you mean 'zavis'\?\)"):
-        DetectorConfig(KNOWN, "zavi")  # type: ignore[arg-type]  # as a user may write
+        method_named("zavi")

@@ -28,6 +28,7 @@ from zavis_bt.perception.detector import (
 from zavis_bt.perception.detector.backbones import TinyBody
 from zavis_bt.perception.detector.batches import Batches
 from zavis_bt.perception.detector.building import build_network, export_training
+from zavis_bt.perception.detector.config import BackboneName, Method
 from zavis_bt.perception.detector.decoded import Decoded
 from zavis_bt.perception.detector.warm_up import WarmUp, warm_up_body, warm_up_boxes
 
@@ -46,9 +47,9 @@ def dark(rgb: np.ndarray, boxes: np.ndarray) -> np.ndarray:
 
 
 def training(
-    folder: Path, method: str = "zavis", settings: TrainingSettings = SHORT, known: tuple[str, ...] = KNOWN
+    folder: Path, method: Method = "zavis", settings: TrainingSettings = SHORT, known: tuple[str, ...] = KNOWN
 ) -> Training:
-    config = DetectorConfig(known, method, mixtures=3)  # type: ignore[arg-type]  # a literal
+    config = DetectorConfig(known, method, mixtures=3)
     labelling = {"zavis": ClipLabelling(dark), "ore": ProposalLabelling(), "faster_rcnn": None}[method]
     return Training(build_network(config, settings.seed), open_dataset(folder), settings, labelling)
 
@@ -153,8 +154,8 @@ def test_a_corrupt_image_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("backbone", ["resnet50_fpn", "resnet50_c4"])
-def test_full_size_detectors_learn_a_step_and_detect(tmp_path: Path, backbone: str) -> None:
-    config = DetectorConfig(KNOWN, "zavis", backbone, width=64)  # type: ignore[arg-type]  # a literal
+def test_full_size_detectors_learn_a_step_and_detect(tmp_path: Path, backbone: BackboneName) -> None:
+    config = DetectorConfig(KNOWN, "zavis", backbone, width=64)
     settings = TrainingSettings(1, 1, 1e-5, views=Views(64, 1.0, 0.0))
     data = open_dataset(write_coco_scenes(tmp_path / "data", 2))
     network = build_network(config, 0)

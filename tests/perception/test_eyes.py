@@ -149,7 +149,7 @@ def test_detectors_classes_decide_which_landmarks_are_known() -> None:
     assert unknown == ("desk", "bed")
 
 
-@pytest.mark.skipif(importlib.util.find_spec("torch") is None, reason="torch is not installed")
+@pytest.mark.skipif(importlib.util.find_spec("torch") is None, reason="without torch neural eyes cannot be asked for")
 def test_torch_is_loaded_for_neural_eyes_only() -> None:
     code = """
 import sys

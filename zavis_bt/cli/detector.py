@@ -174,6 +174,7 @@ def _config(known: str | None, method: str, backbone: str, width: int | None, *,
     from zavis_bt.perception.datasets import project_name
     from zavis_bt.perception.detector import DetectorConfig
     from zavis_bt.perception.detector.building import DEFAULT_KNOWN
+    from zavis_bt.perception.detector.config import backbone_named, method_named
 
     names = (
         DEFAULT_KNOWN
@@ -181,7 +182,7 @@ def _config(known: str | None, method: str, backbone: str, width: int | None, *,
         else tuple(project_name(name.strip()) for name in known.split(",") if name.strip())
     )
     working = 320 if backbone == "tiny" else (width or 800)
-    return DetectorConfig(names, method, backbone, width=working, frozen=pretrained)  # type: ignore[arg-type]  # checks
+    return DetectorConfig(names, method_named(method), backbone_named(backbone), width=working, frozen=pretrained)
 
 
 def _labelling(method: str, clip: str, device: str) -> Labelling | None:

@@ -154,4 +154,4 @@ def decode_config(payload: bytes) -> Config:
         else:
             values[name] = number.unpack_from(rest)[0] if len(rest) >= number.size else 0
             rest = rest[number.size :]
-    return Config(**values)  # type: ignore[arg-type]  # each by its own format
+    return Config(**values)  # type: ignore[arg-type]  # _layout() says which fields are texts

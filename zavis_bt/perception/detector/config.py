@@ -4,13 +4,42 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.types import UNKNOWN_CLASS
 
 Method = Literal["zavis", "ore", "faster_rcnn"]
 BackboneName = Literal["tiny", "resnet50_fpn", "resnet50_c4"]
+
+_METHODS: tuple[Method, ...] = get_args(Method)
+_BACKBONES: tuple[BackboneName, ...] = get_args(BackboneName)
+_Choice = TypeVar("_Choice", bound=str)
+
+
+def method_named(name: str) -> Method:
+    """Return the method of a name.
+
+    Raises:
+        InputError: There is none.
+    """
+    return _one_of("method", name, _METHODS)
+
+
+def backbone_named(name: str) -> BackboneName:
+    """Return the backbone of a name.
+
+    Raises:
+        InputError: There is none.
+    """
+    return _one_of("backbone", name, _BACKBONES)
+
+
+def _one_of(what: str, name: str, choices: tuple[_Choice, ...]) -> _Choice:
+    for choice in choices:
+        if choice == name:
+            return choice
+    raise InputError(f"{what}: '{name}' is unknown{did_you_mean(name, choices)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +83,8 @@ class DetectorConfig:
     choice: Choice = field(default_factory=Choice)
 
     def __post_init__(self) -> None:
-        for name, choices in (("method", get_args(Method)), ("backbone", get_args(BackboneName))):
-            value = getattr(self, name)
-            if value not in choices:
-                raise InputError(f"{name}: '{value}' is unknown{did_you_mean(str(value), choices)}")
+        method_named(str(self.method))
+        backbone_named(str(self.backbone))
         if not self.known or UNKNOWN_CLASS in self.known or len(set(self.known)) < len(self.known):
             raise InputError(f"known: needs one or more different classes, none of them '{UNKNOWN_CLASS}'")
         if not 1 <= self.mixtures <= 64 or not 32 <= self.width <= 4096:
