@@ -3,12 +3,12 @@
 Eyes look at labelled images as they would in a mission.
 
 - m_t: a text that nothing in the image answers to shall bring a candidate in at most a given share of the images.
-- The landmarks' threshold sets boxes of furniture that goes by a landmark's name apart from all others, by the
-  greatest sum of both shares told rightly (Youden's index).
+- The landmarks' threshold lets one in fifty of the boxes pass that are told by matching and show no landmark.
 - The trust in the detector's confidence is the one with which the first candidate of an image is most often right.
 - Scores may be relative to those of other texts (`Contrast`), which helps some models much and others not at all. The
   texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
-- The least confidence of a known landmark sets boxes that show their class apart from those that do not, likewise.
+- The least confidence of a known landmark sets boxes that show their class apart from those that do not, by
+  the greatest sum of both shares told rightly (Youden's index).
 - The least confidence of an ``unknown`` box is the one with which most things and landmarks are told: faint boxes are
   false alarms more often than finds, and drive the other thresholds up.
 - T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.

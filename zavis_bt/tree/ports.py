@@ -204,7 +204,7 @@ class In(Generic[T]):
         if self._ranged:
             return self._checked(value)
         # Whoever writes checks the type and the loader that types fit, except that an int may stand for a float.
-        return float(value) if type(value) is int and self.port.data_type is float else value  # type: ignore[return-value]
+        return float(value) if type(value) is int and self.port.data_type is float else value  # type: ignore[return-value]  # checked as said
 
     def _checked(self, value: Any) -> T:
         try:

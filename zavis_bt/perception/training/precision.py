@@ -1,4 +1,4 @@
-"""Sixteen-bit arithmetic where the processor has it: networks train twice as fast, and learn the same."""
+"""Sixteen-bit arithmetic where the processor has it: networks train faster, and learn the same."""
 
 from __future__ import annotations
 
