@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.appearance import SHAPES, CameraEffects, random_frame, random_scene
+from sim.appearance import SHAPES, THINGS, CameraEffects, random_frame, random_scene
 from sim.frame import SimFrame
 from sim.render_labels import Label
 from zavis_bt.errors import InputError, did_you_mean
@@ -43,7 +43,7 @@ class FrameRecipe:
     """[rad]"""
     distance: tuple[float, float] = (0.4, 4.0)
     """Of the camera from the thing in the image's middle [m]."""
-    categories: tuple[str, ...] = tuple(SHAPES)
+    categories: tuple[str, ...] = THINGS
     """What is in the rooms; a name that stands there twice is drawn twice as often."""
     least_side: float = 12.0
     """Things whose box is narrower are marked as not to be counted (``iscrowd``) [px]."""
@@ -68,7 +68,7 @@ def chosen_categories(without: Iterable[str] = (), also: Iterable[str] = ()) -> 
     both = next((name for name in also if name in without), None)
     if both is not None:
         raise InputError(f"frames: '{both}' cannot be left out and drawn more often (name it once)")
-    left = tuple(name for name in SHAPES if name not in without)
+    left = tuple(name for name in THINGS if name not in without)
     if not left:
         raise InputError("frames: no category is left to draw (leave out fewer)")
     return left + also

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from sim.appearance.catalogue import SHAPES, SYNONYMS, shape_of
+from sim.appearance.catalogue import SHAPES, SYNONYMS, THINGS, shape_of
 from sim.appearance.effects import CameraEffects
 from sim.appearance.look import Look, look_of
 from sim.appearance.room import Covering, RoomLook
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 __all__ = [
     "SHAPES",
     "SYNONYMS",
+    "THINGS",
     "CameraEffects",
     "Covering",
     "Look",

@@ -11,6 +11,8 @@ from sim.appearance.shape import Part, Pattern, Shape, ball, box, rod, shape
 GROUPS = (seats_and_beds, furniture, kitchen, office, leisure, household, wear)
 SHAPES: dict[str, Shape] = {name: one for group in GROUPS for name, one in group.SHAPES.items()}
 """All shapes by category."""
+THINGS = tuple(name for name in SHAPES if name != "obstacle")
+"""Categories that people have a word for; a plain block is what is left when there is none."""
 _ALSO_CALLED = {
     "sofa": "couch, loveseat", "chair": "dining chair", "armchair": "arm chair", "stool": "bar stool",
     "ottoman": "footstool, pouf", "dining table": "table, kitchen table",

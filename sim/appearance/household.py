@@ -79,9 +79,10 @@ SHAPES: dict[str, Shape] = {
         gloss=0.4,
     ),
     "bucket": shape(
-        (tube((-1, 1), (-1, 1), (0, 0.8), taper=(0.74, 1), hole=0.93),
-         rod((-0.72, 0.72), (-0.72, 0.72), (0, 0.1), "dark"),
-         tube((-0.96, 0.96), (-0.05, 0.05), (0.5, 1), "metal", axis="y", hole=0.94)),
+        (tube((-1, 1), (-1, 1), (0, 0.72), taper=(0.64, 1), hole=0.93),
+         tube((-1, 1), (-1, 1), (0.68, 0.74), "trim", hole=0.9),
+         rod((-0.62, 0.62), (-0.62, 0.62), (0, 0.1), "dark"),
+         tube((-0.98, 0.98), (-0.06, 0.06), (0.42, 1), "metal", axis="y", hole=0.9)),
         size=(0.28, 0.28, 0.34), palette={"body": ("blue", "red", "grey", "green", "yellow")}, where="floor", gloss=0.3,
     ),
     "broom": shape(

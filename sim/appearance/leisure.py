@@ -151,8 +151,8 @@ SHAPES: dict[str, Shape] = {
         palette={"body": ("black", "white", "blue", "red", "grey"), "light": ("red", "yellow")}, pose="lying",
     ),
     "toy blocks": shape(
-        (box((-1, -0.05), (-1, 0.6), (0, 0.5)), box((0.05, 1), (-0.6, 1), (0, 0.5), "glow"),
+        (box((-1, -0.05), (-1, 0.6), (0, 0.5), "fabric"), box((0.05, 1), (-0.6, 1), (0, 0.5), "glow"),
          box((-0.5, 0.5), (-0.7, 0.7), (0.5, 1), "light")), size=(0.12, 0.1, 0.12),
-         palette={"glow": ("blue", "green"), "light": ("yellow", "orange")},
+         palette={"fabric": ("red", "purple"), "glow": ("blue", "green"), "light": ("yellow", "orange")},
     ),
 }  # fmt: skip

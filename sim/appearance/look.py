@@ -26,7 +26,7 @@ class Look:
     colours: FloatArray
     """(slots, 3) r, g, b from 0 to 255, in the order of `SLOTS`."""
     colour: str | None
-    """Basic name of the body's colour."""
+    """Basic name of the body's colour; None if no part shows it."""
     finish: str
     """Pattern of the body."""
     warp: tuple[float, float]
@@ -56,7 +56,9 @@ class Look:
         if not names["accent"]:
             colours[SLOTS.index("accent")] = accent_of(colours[0], next(chances))
         warp = 1 + _WARP * (2 * next(chances) - 1), 1 + _WARP * (2 * next(chances) - 1)
-        return cls(variant, colours, basic_of(names["body"]), finish, warp, int(next(chances) * (1 << 20)))
+        shown = any(part.paint == "body" for part in shape.variants[variant])
+        basic = basic_of(names["body"]) if shown else None
+        return cls(variant, colours, basic, finish, warp, int(next(chances) * (1 << 20)))
 
 
 @lru_cache(maxsize=4096)

@@ -7,12 +7,12 @@ import numpy as np
 from sim.render_paint import COLOURS, basic_colour
 from zavis_bt.types import FloatArray
 
-SHADES: dict[str, tuple[tuple[int, int, int], str]] = {
+SHADES: dict[str, tuple[tuple[int, int, int], str | None]] = {
     "beige": ((206, 188, 156), "brown"),
     "cream": ((238, 228, 204), "white"),
-    "silver": ((186, 190, 196), "grey"),
+    "silver": ((170, 174, 181), "grey"),
     "steel": ((150, 156, 164), "grey"),
-    "charcoal": ((66, 68, 74), "black"),
+    "charcoal": ((54, 56, 62), "black"),
     "gold": ((206, 166, 72), "yellow"),
     "brass": ((178, 148, 78), "yellow"),
     "oak": ((184, 142, 94), "brown"),
@@ -33,14 +33,14 @@ SHADES: dict[str, tuple[tuple[int, int, int], str]] = {
     "lilac": ((176, 148, 206), "purple"),
     "banana": ((242, 214, 66), "yellow"),
     "skin": ((226, 178, 140), "brown"),
-    "glass": ((176, 206, 206), "white"),
+    "glass": ((176, 206, 206), None),
     "screen": ((24, 34, 58), "black"),
     "glow": ((88, 150, 214), "blue"),
     "light": ((255, 244, 208), "white"),
     "ink": ((30, 30, 34), "black"),
     "paper": ((232, 228, 216), "white"),
 }
-"""Further names of colours, as (r, g, b) and the basic colour they belong to."""
+"""Further names of colours, as (r, g, b) and the basic colour they belong to; clear glass has none."""
 
 SLOTS = (
     "body", "trim", "accent", "dark", "metal", "wood", "glass", "paper", "screen", "glow", "light", "leaf", "ink",
@@ -76,7 +76,7 @@ def rgb_of(name: str) -> tuple[int, int, int] | None:
 
 
 def basic_of(name: str) -> str | None:
-    """Return the basic colour that a name belongs to, None if it is no colour's."""
+    """Return the basic colour that a name belongs to, None if it is no colour's or belongs to none."""
     word = name.lower()
     return SHADES[word][1] if word in SHADES else basic_colour(word)
 

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.appearance.catalogue import SHAPES, shape_of
+from sim.appearance.catalogue import THINGS, shape_of
 from sim.appearance.room import RoomLook
+from sim.appearance.shape import Shape
 from sim.frame import SimFrame
 from sim.render_paint import COLOURS
 from sim.scene import Scene
@@ -18,8 +19,9 @@ from zavis_bt.types import FREE, OCCUPIED, CameraIntrinsics, CameraSpec, GridMap
 
 _WALL, _CELL = 0.1, 0.05  # [m]
 _SPREAD = (0.85, 1.2)  # of sizes about the typical one
-_NAMED = 0.6  # share of things whose colour is any of the named ones, not one of the usual
+_NAMED = 0.6  # share of painted things whose colour is any of the named ones, not one of the usual
 _ON_FLOOR = 0.15  # share of small things that lie on the floor
+_AT_WALL, _BACK_TO_WALL = 0.7, 0.95  # share of furniture that stands at a wall: with no front, and with one
 _TRIES = 30
 
 
@@ -30,12 +32,12 @@ def random_world(
 
     Args:
         rng: Source of the draws.
-        categories: What may be in it; all of the catalogue if None.
+        categories: What may be in it; all that has a name if None.
         furniture: Pieces that are tried to place; fewer may fit.
         objects: Small things that are tried to place on furniture and on the floor.
     """
     width, depth = rng.uniform(3.0, 6.0, 2).tolist()
-    names = list(SHAPES if categories is None else categories)
+    names = list(THINGS if categories is None else categories)
     standing = [name for name in names if shape_of(name).where == "floor"]
     loose = [name for name in names if shape_of(name).where == "surface"]
     grid = _room(width, depth)
@@ -98,27 +100,30 @@ def _room(width: float, depth: float) -> GridMap:
     return GridMap(states, _CELL, (-_WALL, -_WALL))
 
 
-def _colour(rng: np.random.Generator) -> str | None:
-    return str(rng.choice(list(COLOURS))) if rng.random() < _NAMED else None
+def _colour(rng: np.random.Generator, shape: Shape) -> str | None:
+    return str(rng.choice(list(COLOURS))) if rng.random() < _NAMED and shape.painted else None
 
 
 def _piece(
     rng: np.random.Generator, category: str, number: int, width: float, depth: float, others: Sequence[Furniture]
 ) -> Furniture | None:
-    """Return a piece of furniture, most often with its back to a wall, or None if there is no place."""
+    """Return a piece of furniture, most often at a wall and with its back to it, or None if there is no place."""
     shape = shape_of(category)
     length, across, height = (np.array(shape.size) * rng.uniform(*_SPREAD, 3)).tolist()
-    look = _colour(rng), int(rng.integers(1 << 30))
+    look = _colour(rng, shape), int(rng.integers(1 << 30))
+    at_wall = rng.random() < (_BACK_TO_WALL if shape.has_front else _AT_WALL)
     for _ in range(_TRIES):
+        side = int(rng.integers(4))  # of the room: low x, high x, low y, high y
         turn = int(rng.integers(4)) * math.pi / 2
         yaw = turn if rng.random() < 0.8 else float(rng.uniform(-math.pi, math.pi))
+        if at_wall and shape.has_front:
+            yaw = math.pi / 2 if (side < 2) == _wide(shape) else 0.0
         half_x = (abs(math.cos(yaw)) * length + abs(math.sin(yaw)) * across) / 2
         half_y = (abs(math.sin(yaw)) * length + abs(math.cos(yaw)) * across) / 2
         if 2 * half_x > width or 2 * half_y > depth:
             continue
         x, y = rng.uniform(half_x, width - half_x), rng.uniform(half_y, depth - half_y)
-        if rng.random() < 0.7:
-            side = int(rng.integers(4))
+        if at_wall:
             x = (half_x + 0.02, width - half_x - 0.02, x, x)[side]
             y = (y, y, half_y + 0.02, depth - half_y - 0.02)[side]
         reach = math.hypot(length, across) / 2
@@ -137,13 +142,17 @@ def _thing(
     others: Sequence[WorldObject],
 ) -> WorldObject | None:
     """Return a small thing on a piece of furniture or on the floor, or None if there is no place."""
-    sizes = (np.array(shape_of(category).size) * rng.uniform(*_SPREAD) * rng.uniform(0.93, 1.07, 3)).tolist()
-    length, across, height = sizes if rng.random() < 0.5 else (sizes[1], sizes[0], sizes[2])
+    shape = shape_of(category)
+    sizes = (np.array(shape.size) * rng.uniform(*_SPREAD) * rng.uniform(0.93, 1.07, 3)).tolist()
     bearers = [piece for piece in furniture if shape_of(piece.category).bears]
-    look = _colour(rng), int(rng.integers(1 << 30))
+    look = _colour(rng, shape), int(rng.integers(1 << 30))
     for _ in range(_TRIES):
+        length, across, height = sizes if rng.random() < 0.5 else (sizes[1], sizes[0], sizes[2])
         if bearers and rng.random() > _ON_FLOOR:
             piece = bearers[int(rng.integers(len(bearers)))]
+            if shape.has_front:  # it looks where the furniture does
+                along_x = abs(math.cos(piece.yaw)) > 0.7
+                length, across = sizes[:2] if along_x == _wide(shape_of(piece.category)) else (sizes[1], sizes[0])
             along = max(piece.length - max(length, across), 0.0) / 2 * rng.uniform(-1, 1)
             aside = max(piece.width - max(length, across), 0.0) / 2 * rng.uniform(-1, 1)
             cos, sin = math.cos(piece.yaw), math.sin(piece.yaw)
@@ -160,6 +169,11 @@ def _thing(
         if all(math.hypot(x - o.x, y - o.y) > 0.4 * (length + across + o.size[0] + o.size[1]) / 2 for o in others):
             return WorldObject(f"thing_{number}", category, x, y, z, (length, across, height), on, *look)
     return None
+
+
+def _wide(shape: Shape) -> bool:
+    """Return whether the front of a shape is a long side of its box: beside the box's x axis, not ahead."""
+    return shape.pose != "ahead"
 
 
 def _within(pose: Pose2D, things: Sequence[Furniture | WorldObject], height: float) -> bool:

@@ -133,6 +133,8 @@ class Shape:
     """Whether things stand on it."""
     gloss: float = 0.0
     """Of the body, 0 to 1."""
+    painted: bool = True
+    """Whether it comes in any colour; what grows does not."""
 
 
 def shape(*variants: tuple[Part | tuple[Part, ...], ...], size: tuple[float, float, float], **more: Any) -> Shape:

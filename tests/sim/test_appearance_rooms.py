@@ -7,11 +7,12 @@ import pytest
 from seen_worlds import look, piece, room, snapshot, thing
 
 from sim.appearance import CameraEffects, RoomLook, random_frame, random_scene, random_world, shape_of
+from sim.appearance.facing import orientations
 from sim.camera import SimCamera
 from sim.render_labels import pixel_boxes
 from sim.scene import Scene
 from sim.world import Furniture
-from zavis_bt.types import CameraIntrinsics, Pose2D
+from zavis_bt.types import FREE, CameraIntrinsics, Pose2D
 
 CAMERA = CameraIntrinsics.from_fov(96, 72, math.radians(60))
 
@@ -106,6 +107,34 @@ def test_random_worlds_stay_within_their_room_and_categories():
         assert 0 < one.x < cols * 0.05
         assert 0 < one.y < rows * 0.05
         assert one.on is None or shape_of(next(p for p in world.furniture if p.id == one.on).category).bears
+
+
+def test_random_furniture_shows_its_front():
+    ahead = []
+    for seed in range(30):
+        scene = random_scene(np.random.default_rng(seed), ["washing machine", "fridge", "toilet", "sofa"])
+        boxes = np.array([(f.x, f.y, 0, f.length, f.width, f.height, f.yaw) for f in scene.world.furniture])
+        shapes = [shape_of(f.category) for f in scene.world.furniture]
+        turns = orientations(scene.world, boxes, shapes)
+        for box, turn in zip(boxes, turns, strict=True):
+            cos, sin = math.cos(box[6]), math.sin(box[6])
+            front = np.array([[cos, -sin], [sin, cos]]) @ -turn[:2, 1]
+            reach = np.abs(turn[:2, 1]) @ box[3:5] / 2 + 0.5
+            ahead.append(scene.world.grid.state_at(*(box[:2] + reach * front)) == FREE)
+    assert len(ahead) > 80
+    assert np.mean(ahead) > 0.95
+
+
+def test_what_grows_has_its_own_colours():
+    names = ["orange", "tomato", "lettuce", "desk"]
+    seen: dict[str, set[str | None]] = {name: set() for name in names}
+    for seed in range(20):
+        scene = random_scene(np.random.default_rng(seed), names)
+        things = (*scene.world.furniture, *scene.world.objects)
+        for one, drawn in zip(things, scene.looks, strict=True):
+            seen[one.category].add(drawn.colour)
+    assert (seen["orange"], seen["tomato"], seen["lettuce"]) == ({"orange"}, {"red"}, {"green"})
+    assert len(seen["desk"]) > 5
 
 
 def test_no_effects_leave_the_image_as_it_is():

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.appearance import SHAPES
+from sim.appearance import SHAPES, THINGS
 from sim.labelled_frames import FrameRecipe, chosen_categories, frames_of_room, labels_in, write_frames
 from zavis_bt.errors import InputError
 from zavis_bt.perception.datasets import open_dataset
@@ -66,6 +66,7 @@ def test_categories_left_out_are_never_drawn() -> None:
     assert few == ("sofa", "desk", "mug", "mug")
     labels = [label for frame, _ in frames_of_room(FrameRecipe(width=64, categories=few), 0) for label in frame.labels]
     assert {label.category for label in labels} & set(SHAPES) <= set(few)
+    assert chosen_categories() == THINGS
 
 
 @pytest.mark.parametrize(
