@@ -37,6 +37,10 @@ def test_train_and_judge(tmp_path: Path) -> None:
     content = json.loads(judged.output)
     assert content["trained_on"] == "rendered pixels"
     assert 0 <= content["figures"]["category, all crops"] <= 1
+    wider = matcher("widen", out, "--width", "40", "--out", str(tmp_path / "wider"))
+    assert wider.exit_code == 0, wider.exception
+    facts = json.loads((tmp_path / "wider" / CONFIG).read_text())
+    assert facts["model_cfg"]["vision_cfg"]["width"] == facts["training"]["widened_to"] == 40
     printed = matcher("eval", "zavis-tiny", data)
     assert "(trained on: rendered pixels)" in printed.output
 
@@ -48,6 +52,7 @@ def test_train_and_judge(tmp_path: Path) -> None:
         (("train", "sim:none", "--out", "x"), "is no number of drawn images"),
         (("train", "sim:4", "--out", "x", "--device", "tpu"), "'tpu' is unknown"),
         (("train", "sim:4", "--out", "x", "--resume"), "holds no training"),
+        (("widen", "zavis-tiny", "--width", "8", "--out", "x"), "an even number above"),
         (("eval", "nonsense", "sim:4"), "is unknown"),
         (("eval", "ViT-B-32@nowhere.pt", "sim:4"), "neither a file nor a published tag"),
     ],

@@ -45,7 +45,7 @@ def train(
     from zavis_bt.cli.detector import check_device
     from zavis_bt.cli.detector_data import open_images
     from zavis_bt.cli.detector_progress import progress_bar
-    from zavis_bt.perception.clip.loading import build_untrained
+    from zavis_bt.perception.clip.loading import build_untrained, model_config
     from zavis_bt.perception.clip.patches import collect_patches
     from zavis_bt.perception.clip.settings import MatcherSettings
     from zavis_bt.perception.clip.training import KEPT, MatcherTraining
@@ -75,7 +75,30 @@ def train(
         seconds = math.inf if minutes is None else 60 * minutes
         training.run(log, lambda state: KEPT.save(out, state), progress, seconds)
     facts = _facts(dataset, settings, training.done, patches.names, patches.colour_names)
-    write_model(out, model, parts.preprocessing, training.averaged_weights(), facts)
+    write_model(out, model_config(model), parts.preprocessing, training.averaged_weights(), facts)
+    typer.echo(f"written: {out}")
+
+
+@app.command()
+def widen(
+    model: Annotated[str, typer.Argument(metavar="MODEL", help="A model's folder, or one that comes along.")],
+    width: Annotated[int, typer.Option(min=2, help="Of the new image tower.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the wider model.")],
+    noise: Annotated[float, typer.Option(min=0.0, help="Of each weight, so that copies can come to differ.")] = 0.04,
+    seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
+) -> None:
+    """Make a trained image tower wider, so that it can learn more from there (train --model OUT --pretrained …)."""
+    from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
+    from zavis_bt.perception.clip.widening import widen as widen_weights
+    from zavis_bt.perception.clip.widening import widened_config
+    from zavis_bt.perception.clip.writing import write_model
+
+    if (out / CONFIG).exists():
+        raise InputError(f"--out: {out} holds a model (name a new folder)")
+    parts, config = load_parts(model, None), model_config(model)
+    weights = widen_weights(parts.network.state_dict(), config, width, noise=noise, seed=seed)
+    facts = read_facts(model)
+    write_model(out, widened_config(config, width), parts.preprocessing, weights, facts | {"widened_to": width})
     typer.echo(f"written: {out}")
 
 

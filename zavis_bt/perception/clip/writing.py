@@ -12,26 +12,30 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from zavis_bt.perception.clip.crops import Preprocessing
-from zavis_bt.perception.clip.loading import CONFIG, WEIGHTS, model_config
+from zavis_bt.perception.clip.loading import CONFIG, WEIGHTS
 
 _EXACT = ("running_mean", "running_var", "logit_scale")  # kept in single precision
 
 
 def write_model(
-    folder: Path, model: str, preprocessing: Preprocessing, weights: Mapping[str, Tensor], facts: Mapping[str, Any]
+    folder: Path,
+    config: Mapping[str, Any],
+    preprocessing: Preprocessing,
+    weights: Mapping[str, Tensor],
+    facts: Mapping[str, Any],
 ) -> None:
     """Write a model in half precision, with its configuration and what is worth knowing of its training.
 
     Args:
         folder: Made if it is not there.
-        model: Whose architecture it has: a name of open_clip, or a folder.
+        config: Its architecture in open_clip's form.
         preprocessing: How it reads images.
         weights: By name.
         facts: Of the training.
     """
     folder.mkdir(parents=True, exist_ok=True)
     document = {
-        "model_cfg": model_config(model),
+        "model_cfg": dict(config),
         "preprocess_cfg": {
             "mean": preprocessing.mean,
             "std": preprocessing.std,
