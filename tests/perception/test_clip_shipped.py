@@ -19,14 +19,14 @@ from zavis_bt.perception.datasets import open_dataset
 SEED, FRAMES = 20_257, 72  # of no other data set
 
 FLOORS = {
-    "category, clear crops": 0.80,
-    "category, clear crops, among the best five": 0.92,
-    "held-out pair, clear crops": 0.50,
+    "category, clear crops": 0.89,
+    "category, clear crops, among the best five": 0.95,
+    "held-out pair, clear crops": 0.55,
     "held-out pair, colour of the known category": 0.70,
-    "mean AP of colour-noun queries, clear crops": 0.85,
-    "synonyms, clear crops": 0.70,
-    "objectness, area under ROC": 0.97,
-    "things with o(B) > 0.9": 0.88,
+    "mean AP of colour-noun queries, clear crops": 0.88,
+    "synonyms, clear crops": 0.80,
+    "objectness, area under ROC": 0.98,
+    "things with o(B) > 0.9": 0.92,
 }
 
 
@@ -34,11 +34,12 @@ FLOORS = {
 def figures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
     torch.set_num_threads(1)
     folder = tmp_path_factory.mktemp("shipped") / "frames"
-    trained = read_facts("zavis-tiny")["categories"]
+    facts = read_facts("zavis-tiny")
+    trained = facts["categories"]
     list(write_frames(folder, FRAMES, FrameRecipe(seed=SEED, categories=tuple(trained))))
     model = ClipModel.load("zavis-tiny")
     gallery = encode_gallery(model, open_dataset(folder))
-    found = MatcherEvaluation(model, gallery, trained).report(Vocabulary.read()).figures
+    found = MatcherEvaluation(model, gallery, trained, facts["held_out"]).report(Vocabulary.read()).figures
     return {name.lstrip("0123456789 "): value for name, value in found.items()}  # "22 synonyms": those in these frames
 
 
@@ -54,6 +55,6 @@ def test_things_and_background_are_told_by_the_papers_threshold(figures: dict[st
 def test_the_shipped_model_says_what_it_was_trained_on() -> None:
     facts = read_facts("zavis-tiny")
     assert facts["trained_on"] == "rendered pixels"
-    assert len(facts["categories"]) == 123
+    assert len(facts["categories"]) == 122
     weights = Path(__file__).parents[2] / "zavis_bt/perception/weights/zavis_tiny_clip/open_clip_model.safetensors"
-    assert weights.stat().st_size < 10e6
+    assert weights.stat().st_size < 12e6

@@ -16,9 +16,11 @@ import torch.nn.functional as F
 from sim.labelled_frames import FrameRecipe, write_frames
 from zavis_bt.errors import InputError
 from zavis_bt.perception.clip import ClipModel
-from zavis_bt.perception.clip.augment import Augmentation, boxes_near, coarsen, cut_squares
+from zavis_bt.perception.clip.augment import Augmentation, boxes_near, coarsen, cut_squares, repaint
 from zavis_bt.perception.clip.backgrounds import draw_backgrounds
+from zavis_bt.perception.clip.batches import CropBatches
 from zavis_bt.perception.clip.captions import EMPTY, NO_COLOUR, CaptionWriter
+from zavis_bt.perception.clip.colours import held_out_pairs, many_coloured
 from zavis_bt.perception.clip.half_size import can_halve, reading_half_size
 from zavis_bt.perception.clip.loading import build_untrained
 from zavis_bt.perception.clip.loss import contrastive_loss
@@ -58,16 +60,33 @@ def test_loss_of_one_pair_each_is_infonce() -> None:
     logits = 10 * images @ texts.T
     labels = torch.arange(4)
     expected = (F.cross_entropy(logits, labels) + F.cross_entropy(logits.T, labels)) / 2
-    loss = contrastive_loss(images, texts, torch.eye(4, dtype=torch.bool), torch.tensor(10.0))
+    own = torch.eye(4, dtype=torch.bool)
+    loss = contrastive_loss(images, texts, own, own, torch.tensor(10.0))
     torch.testing.assert_close(loss, expected)
 
 
 def test_true_captions_of_others_are_no_mistakes() -> None:
     images = F.normalize(torch.tensor([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), dim=1)
     true = torch.tensor([[True, True, False], [True, True, False], [False, False, True]])
-    alike = contrastive_loss(images, images, true, torch.tensor(50.0))
+    own = torch.eye(3, dtype=torch.bool)
+    alike = contrastive_loss(images, images, true, true, torch.tensor(50.0))
     assert alike < 1e-6  # told apart from what is wrong
-    assert contrastive_loss(images, images, torch.eye(3, dtype=torch.bool), torch.tensor(50.0)) > 0.3
+    assert contrastive_loss(images, images, own, own, torch.tensor(50.0)) > 0.3
+
+
+def test_captions_that_may_be_true_say_nothing() -> None:
+    images, texts = F.normalize(torch.randn(3, 8), dim=1), F.normalize(torch.randn(4, 8), dim=1)
+    true = torch.eye(3, 4, dtype=torch.bool)
+    possible = true.clone()
+    possible[0, 3] = True
+    other = texts.clone()
+    other[3] = -images[0]
+
+    def image_losses(captions: torch.Tensor, possible: torch.Tensor) -> torch.Tensor:
+        return contrastive_loss(images[:1], captions[[0, 3]], true[:1, [0, 3]], possible[:1, [0, 3]], torch.tensor(9.0))
+
+    torch.testing.assert_close(image_losses(texts, possible), image_losses(other, possible))
+    assert not torch.isclose(image_losses(texts, true), image_losses(other, true))
 
 
 def test_captions_are_true_of_their_own_crops() -> None:
@@ -82,6 +101,50 @@ def test_captions_are_true_of_their_own_crops() -> None:
         for j, text in enumerate(captions.texts[:5]):
             assert not ("red" in text.split() and true[1, j])
             assert not (("couch" in text or "furniture" in text) and true[2, j])
+
+
+def test_repainted_crops_change_their_hue_alone() -> None:
+    plain = torch.tensor([[200.0, 40, 40], [90, 90, 90], [200, 40, 40]])[:, :, None, None].expand(3, 3, 5, 5)
+    chosen = torch.tensor([True, True, False])
+    painted = repaint(plain.clone(), chosen, torch.Generator().manual_seed(0))
+    torch.testing.assert_close(painted.sort(dim=1).values, plain.sort(dim=1).values)
+    torch.testing.assert_close(painted[1:], plain[1:])  # grey, and not chosen
+    seen = {
+        tuple(repaint(plain.clone(), chosen, torch.Generator().manual_seed(k))[0, :, 0, 0].tolist()) for k in range(9)
+    }
+    assert len(seen) > 1
+
+
+def test_the_colour_of_repainted_crops_is_not_known(patches: Patches) -> None:
+    names = ("red", "blue", "green", "white", "black", "pink", "grey")
+    patches = replace(
+        patches,
+        colours=np.where(patches.background, NO_COLOUR, np.arange(len(patches.colours)) % len(names)).astype(np.int32),
+        colour_names=names,
+    )
+    settings = MatcherSettings(batch=200, augmentation=Augmentation(repainted=0.5))
+    writer = CaptionWriter(patches.names, patches.colour_names, WORDS)
+    batches = CropBatches(patches, writer, build_untrained("zavis-tiny").preprocessing, settings)
+    batch = batches.draw(0, 32)
+    own = torch.arange(len(batch.images))
+    unsure = (batch.possible & ~batch.true).any(dim=1)
+    assert (batch.colours[unsure] == NO_COLOUR).all()
+    assert 0.2 < unsure.float().mean() < 0.8
+    assert batch.true[own, own].all()
+    assert (batch.possible | ~batch.true).all()
+
+
+def test_pairs_are_held_out_of_what_comes_in_many_colours_only() -> None:
+    colours = ["red", "blue", "green", "white", "black", "pink", "grey"]
+    pairs = {(colour, f"thing {k}") for colour in colours for k in range(60)} | {
+        ("orange", f"fruit {k}") for k in range(60)
+    }
+    held = held_out_pairs(pairs)
+    assert held <= pairs
+    assert {category.split()[0] for _, category in held} == {"thing"}
+    assert 0.05 < len(held) / 420 < 0.17
+    assert held_out_pairs(sorted(pairs) * 2) == held
+    assert many_coloured(pairs | {("", "glass")}) == {f"thing {k}" for k in range(60)}
 
 
 def test_backgrounds_overlap_nothing_much() -> None:

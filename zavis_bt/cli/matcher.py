@@ -12,6 +12,7 @@ import typer
 from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
+    from zavis_bt.perception.clip.patches import Patches
     from zavis_bt.perception.clip.settings import MatcherSettings
     from zavis_bt.perception.datasets import DetectionDataset
 
@@ -74,7 +75,7 @@ def train(
     with TrainingLog(out) as log, progress_bar(steps, "training") as progress:
         seconds = math.inf if minutes is None else 60 * minutes
         training.run(log, lambda state: KEPT.save(out, state), progress, seconds)
-    facts = _facts(dataset, settings, training.done, patches.names, patches.colour_names)
+    facts = _facts(dataset, settings, training.done, patches)
     write_model(out, model_config(model), parts.preprocessing, training.averaged_weights(), facts)
     typer.echo(f"written: {out}")
 
@@ -156,7 +157,8 @@ def evaluate(
     with progress_bar(len(dataset), "looking") as progress:
         gallery = encode_gallery(opened, dataset, width=width, report=lambda done, _: progress(done))
     trained = [*map(str, facts.get("categories") or dataset.categories)]
-    report = MatcherEvaluation(opened, gallery, trained).report(vocabulary)
+    held_out = [*map(str, facts.get("held_out") or ())]
+    report = MatcherEvaluation(opened, gallery, trained, held_out).report(vocabulary)
     source = f"{dataset.name}, {'rendered' if dataset.rendered else 'photographed'} images"
     if as_json:
         document: dict[str, Any] = {"model": model, "trained_on": facts.get("trained_on"), "data": source}
@@ -170,9 +172,7 @@ def evaluate(
         typer.echo(f"{share:8.3f}  of {true} taken for {given}")
 
 
-def _facts(
-    dataset: DetectionDataset, settings: MatcherSettings, done: int, names: tuple[str, ...], colours: tuple[str, ...]
-) -> dict[str, Any]:
+def _facts(dataset: DetectionDataset, settings: MatcherSettings, done: int, patches: Patches) -> dict[str, Any]:
     return {
         "trained_on": "rendered pixels" if dataset.rendered else "photographs",
         "data": dataset.name,
@@ -182,7 +182,7 @@ def _facts(
         "learning_rate": settings.learning_rate,
         "half_size": settings.half_size,
         "seed": settings.seed,
-        "held_out": "a tenth of the pairs of colour and category",
-        "categories": names,
-        "colours": colours,
+        "held_out": patches.held_out,
+        "categories": patches.names,
+        "colours": patches.colour_names,
     }

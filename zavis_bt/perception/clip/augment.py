@@ -21,6 +21,8 @@ class Augmentation:
     contrast: float = 0.15
     tint: float = 0.04
     """Standard deviation of each channel's factor; colours must stay what they are called."""
+    repainted: float = 0.2
+    """Share of crops, of what comes in many colours, that are shown in others, which have no name then."""
     coarse: float = 0.3
     """Share of crops shown as the camera would have seen them with fewer pixels."""
     least_share: float = 0.3
@@ -67,6 +69,18 @@ def vary_light(images: Tensor, augmentation: Augmentation, rng: torch.Generator)
     gain = 1 + augmentation.contrast * _spread((n, 1, 1, 1), rng) + augmentation.tint * _spread((n, 3, 1, 1), rng)
     offset = 255 * augmentation.brightness * _spread((n, 1, 1, 1), rng) * 0.5
     return (images * gain + offset).clamp(0, 255)
+
+
+def repaint(images: Tensor, chosen: Tensor, rng: torch.Generator) -> Tensor:
+    """Return images (n, 3, h, w) of which the chosen (n,) have their colours' channels shifted or swapped, in place.
+
+    Red becomes green or blue, yellow may become cyan; white, grey and black stay.
+    """
+    orders = torch.tensor([(0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)])
+    rows = torch.nonzero(chosen)[:, 0]
+    order = orders[torch.randint(len(orders), (len(rows),), generator=rng)]
+    images[rows] = images[rows[:, None], order]
+    return images
 
 
 def coarsen(images: Tensor, lengths: Tensor, augmentation: Augmentation, rng: torch.Generator) -> Tensor:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from zavis_bt.errors import InputError
-from zavis_bt.perception.clip.augment import boxes_near, coarsen, cut_squares, vary_light
-from zavis_bt.perception.clip.captions import CaptionWriter
+from zavis_bt.perception.clip.augment import boxes_near, coarsen, cut_squares, repaint, vary_light
+from zavis_bt.perception.clip.captions import NO_COLOUR, CaptionWriter
+from zavis_bt.perception.clip.colours import many_coloured
 from zavis_bt.perception.clip.crops import Preprocessing
 from zavis_bt.perception.clip.patches import Patches
 from zavis_bt.perception.clip.settings import MatcherSettings
@@ -31,6 +32,8 @@ class CropBatch:
     """(m,) m ≥ n; the i-th is crop i's."""
     true: Tensor
     """(n, m) whether a caption is true of a crop."""
+    possible: Tensor
+    """(n, m) whether it is or may be, for all that is known of the crop's colour."""
 
 
 class CropBatches:
@@ -50,6 +53,7 @@ class CropBatches:
         sight = patches.visible[self._things] / (2 * settings.least_visible)
         weights = np.minimum(sight, 1.0) / np.bincount(kinds)[kinds]
         self._cumulative = np.cumsum(weights) / weights.sum()
+        self._paintable = _paintable(patches)
 
     def draw(self, step: int, size: int) -> CropBatch:
         """Return the batch of a step, always the same one, with images of that side [px]."""
@@ -59,12 +63,15 @@ class CropBatches:
         rows = self._rows(settings.batch, rng)
         captioned = np.concatenate([rows, self._rows(settings.more_captions, rng)])
         categories, colours = (np.asarray(x[captioned], dtype=np.intp) for x in self._labels)
-        captions = self._writer.write(categories, colours, rng)
         n = len(rows)
+        repainted = self._paintable[categories[:n]] & (rng.random(n) < settings.augmentation.repainted)
+        colours[:n][repainted] = NO_COLOUR
+        captions = self._writer.write(categories, colours, rng)
         true = self._writer.true_of(categories[:n], colours[:n], captions)
-        images = self._images(rows, size, generator)
+        possible = true | (repainted[:, None] & self._writer.true_in_some_colour(categories[:n], captions))
+        images = self._images(rows, torch.from_numpy(repainted), size, generator)
         shown, painted = torch.from_numpy(categories[:n]), torch.from_numpy(colours[:n])
-        return CropBatch(images, shown, painted, captions.texts, torch.from_numpy(true))
+        return CropBatch(images, shown, painted, captions.texts, torch.from_numpy(true), torch.from_numpy(possible))
 
     @property
     def _labels(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -75,11 +82,20 @@ class CropBatches:
         drawn = np.searchsorted(self._cumulative, rng.random(count - rest)).clip(max=len(self._things) - 1)
         return np.concatenate([self._things[drawn], rng.choice(self._rest, rest) if rest else self._rest[:0]])
 
-    def _images(self, rows: NDArray[np.intp], size: int, rng: torch.Generator) -> Tensor:
+    def _images(self, rows: NDArray[np.intp], repainted: Tensor, size: int, rng: torch.Generator) -> Tensor:
         patches, how = self._patches, self._settings.augmentation
         boxes, limits = torch.from_numpy(patches.boxes[rows]), torch.from_numpy(patches.limits[rows])
         pixels = torch.from_numpy(patches.pixels[rows]).permute(0, 3, 1, 2).float()
         mirrored = torch.rand(len(rows), generator=rng) < 0.5
         squares, inside = cut_squares(pixels, boxes_near(boxes, limits, how, rng), mirrored, size)
-        squares = coarsen(vary_light(squares, how, rng), torch.from_numpy(patches.lengths[rows]), how, rng)
+        squares = vary_light(repaint(squares, repainted, rng), how, rng)
+        squares = coarsen(squares, torch.from_numpy(patches.lengths[rows]), how, rng)
         return ((squares - self._mean) / self._std * inside).contiguous(memory_format=torch.channels_last)
+
+
+def _paintable(patches: Patches) -> NDArray[np.bool_]:
+    """Return whether each category, the two of background with them, comes in many colours."""
+    pairs = np.unique(np.stack([patches.colours, patches.categories]), axis=1).T.tolist()
+    names = (*patches.names, "", "")
+    many = many_coloured((patches.colour_names[c], names[k]) for c, k in pairs if c != NO_COLOUR)
+    return np.isin(names, [*many])

@@ -88,10 +88,14 @@ class CaptionWriter:
 
     def true_of(self, categories: NDArray[np.intp], colours: NDArray[np.intp], captions: Captions) -> NDArray[np.bool_]:
         """Return whether caption j is true of crop i, (n, m): a red sofa is a sofa, furniture and a red thing."""
-        noun = self.truth[captions.nouns][:, categories].T
         colour = (captions.colours == NO_COLOUR) | (captions.colours == colours[:, None])
-        both: NDArray[np.bool_] = noun & colour
+        both: NDArray[np.bool_] = self.true_in_some_colour(categories, captions) & colour
         return both
+
+    def true_in_some_colour(self, categories: NDArray[np.intp], captions: Captions) -> NDArray[np.bool_]:
+        """Return whether caption j would be true of crop i if that had the colour, (n, m)."""
+        nouns: NDArray[np.bool_] = self.truth[captions.nouns][:, categories].T
+        return nouns
 
     def _noun(self, text: str, categories: Sequence[str]) -> int:
         self._texts.append(text)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from zavis_bt.perception.clip.gallery import Gallery, is_held_out
+from zavis_bt.perception.clip.gallery import Gallery
 from zavis_bt.perception.clip.model import ClipModel
 from zavis_bt.perception.clip.prompts import BACKGROUND_PROMPTS, OBJECT_PROMPTS
 from zavis_bt.perception.clip.vocabulary import Vocabulary
@@ -34,19 +34,24 @@ class MatcherReport:
 class MatcherEvaluation:
     """Measures of one model on one gallery."""
 
-    def __init__(self, model: ClipModel, gallery: Gallery, trained: Sequence[str]) -> None:
+    def __init__(
+        self, model: ClipModel, gallery: Gallery, trained: Sequence[str], held_out: Collection[str] = ()
+    ) -> None:
         """Take a gallery.
 
         Args:
             model: The one that encoded it.
             gallery: Crops.
             trained: Names of the categories the model was trained on; the gallery may hold others.
+            held_out: Colours and categories that training left out together, such as ``red wallet``.
         """
         self._model, self._gallery = model, gallery
         self._shown = sorted(set(gallery.categories.tolist()) - {""})
         self._names = [name for name in self._shown if name in trained] or self._shown
         self._colours = sorted(set(gallery.colours.tolist()) - {""})
         self._known = np.isin(gallery.categories, self._names)
+        pairs = zip(gallery.colours.tolist(), gallery.categories.tolist(), strict=True)
+        self._held_out = np.isin([" ".join(pair) for pair in pairs], [*held_out])
         self._clear = (gallery.sides >= _CLEAR_SIDE) & (gallery.visible >= _CLEAR_SIGHT)
 
     def report(self, vocabulary: Vocabulary) -> MatcherReport:
@@ -75,6 +80,7 @@ class MatcherEvaluation:
         return {
             "category, all crops": _mean(right),
             "category, clear crops": _mean(right[clear]),
+            "category, clear crops of pairs that training has": _mean(right[clear & ~self._held_out[known]]),
             f"category, clear crops of {_LARGE:g} px and more": _mean(right[clear & large]),
             f"category, clear crops under {_LARGE:g} px": _mean(right[clear & ~large]),
             "category, clear crops, twins as one": _mean(alike[clear]),
@@ -90,8 +96,7 @@ class MatcherEvaluation:
     def pairs(self) -> dict[str, float]:
         """Return how well category and colour are told, together and apart, over pairs that training left out."""
         gallery = self._gallery
-        held = np.array([is_held_out(*pair) for pair in zip(gallery.colours, gallery.categories, strict=True)])
-        held &= self._known & self._clear & (gallery.colours != "")
+        held = self._known & self._clear & self._held_out
         if not held.any():
             return {}
         texts = [f"{colour} {name}" for colour in self._colours for name in self._names]

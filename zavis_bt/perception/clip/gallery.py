@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -78,11 +77,6 @@ def encode_gallery(
         raise InputError(f"{dataset.name}: shows nothing that counts (things of at least {LEAST_SIDE:g} px)")
     names, colours, sides, visible = zip(*rows, strict=True)
     return Gallery(torch.cat(vectors), np.array(names), np.array(colours), np.array(sides), np.array(visible))
-
-
-def is_held_out(colour: str, category: str) -> bool:
-    """Return whether training leaves out this category in this colour: a tenth of the pairs, told by a checksum."""
-    return zlib.crc32(f"{colour} {category}".encode()) % 10 == 0
 
 
 def shorter_side(box: NDArray[np.float64] | tuple[float, ...], size: tuple[int, int]) -> float:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from zavis_bt.errors import InputError
 from zavis_bt.perception.clip.backgrounds import draw_backgrounds
 from zavis_bt.perception.clip.captions import EMPTY, NO_COLOUR, PART
-from zavis_bt.perception.clip.gallery import LEAST_SIDE, is_held_out, shorter_side
+from zavis_bt.perception.clip.colours import Pair, held_out_pairs
+from zavis_bt.perception.clip.gallery import LEAST_SIDE, shorter_side
 from zavis_bt.perception.datasets import DetectionDataset
 
 MARGIN = 1.25
@@ -46,6 +47,8 @@ class Patches:
     """(n,) share in sight."""
     names: tuple[str, ...]
     colour_names: tuple[str, ...]
+    held_out: tuple[str, ...]
+    """Colour and category that were left out, such as ``red wallet``."""
     rendered: bool
     """Whether a simulator drew the images."""
 
@@ -80,12 +83,13 @@ def collect_patches(
         InputError: No thing counts.
     """
     side = round(size * MARGIN)
-    key = json.dumps([dataset.name, len(dataset), side, backgrounds, hold_out, seed])
+    key = json.dumps([dataset.name, len(dataset), side, backgrounds, hold_out, seed, "many-coloured"])
     if (found := _read(folder, key)) is not None:
         return found
     rng = np.random.default_rng(seed)
     folder.mkdir(parents=True, exist_ok=True)
-    rows = [_boxes(dataset, index, backgrounds, hold_out, rng) for index in range(len(dataset))]
+    held = held_out_pairs(_pairs(dataset)) if hold_out else frozenset()
+    rows = [_boxes(dataset, index, backgrounds, held, rng) for index in range(len(dataset))]
     total = sum(map(len, rows))
     if not any(name not in _PSEUDO for image in rows for _, name, _, _ in image):
         raise InputError(f"{dataset.name}: shows nothing to train on (things of at least {LEAST_SIDE:g} px that count)")
@@ -101,7 +105,7 @@ def collect_patches(
         if report:
             report(index + 1, len(dataset))
     pixels.flush()
-    _write(folder, key, dataset, [row for image in rows for row in image], frames)
+    _write(folder, key, dataset, [row for image in rows for row in image], frames, held)
     patches = _read(folder, key)
     assert patches is not None
     return patches
@@ -139,22 +143,33 @@ def cut_patch(
 _Row = tuple[NDArray[np.float64], str, str, float]  # box, category, colour, share in sight
 
 
+def _pairs(dataset: DetectionDataset) -> set[Pair]:
+    things = (thing for index in range(len(dataset)) for thing in dataset.annotations(index))
+    return {(thing.colour or "", thing.category) for thing in things}
+
+
 def _boxes(
-    dataset: DetectionDataset, index: int, backgrounds: int, hold_out: bool, rng: np.random.Generator
+    dataset: DetectionDataset, index: int, backgrounds: int, held: frozenset[Pair], rng: np.random.Generator
 ) -> list[_Row]:
     size, things = dataset.size(index), dataset.annotations(index)
     boxes = np.array([thing.box for thing in things], dtype=np.float64).reshape(-1, 4)
     rows: list[_Row] = []
     for thing, box in zip(things, boxes, strict=True):
         colour = thing.colour or ""
-        held = hold_out and is_held_out(colour, thing.category)
-        if not thing.ignored and not held and shorter_side(thing.box, size) >= LEAST_SIDE:
+        if not thing.ignored and (colour, thing.category) not in held and shorter_side(thing.box, size) >= LEAST_SIDE:
             rows.append((box, thing.category, colour, thing.visible))
     rows += [(box, kind, "", 1.0) for box, kind in draw_backgrounds(boxes, size, backgrounds, rng)]
     return rows
 
 
-def _write(folder: Path, key: str, dataset: DetectionDataset, rows: list[_Row], frames: NDArray[np.float32]) -> None:
+def _write(
+    folder: Path,
+    key: str,
+    dataset: DetectionDataset,
+    rows: list[_Row],
+    frames: NDArray[np.float32],
+    held: frozenset[Pair],
+) -> None:
     names = sorted({name for _, name, _, _ in rows} - set(_PSEUDO))
     colours = sorted({colour for _, _, colour, _ in rows} - {""})
     number = {name: k for k, name in enumerate((*names, *_PSEUDO))}
@@ -169,6 +184,7 @@ def _write(folder: Path, key: str, dataset: DetectionDataset, rows: list[_Row], 
         visible=np.array([visible for _, _, _, visible in rows], dtype=np.float32),
         names=np.array(names),
         colour_names=np.array(colours, dtype=np.str_),
+        held_out=np.array(sorted(" ".join(pair) for pair in held), dtype=np.str_),
         rendered=np.array(dataset.rendered),
     )
 
@@ -189,5 +205,6 @@ def _read(folder: Path, key: str | None) -> Patches | None:
             table["visible"],
             tuple(table["names"].tolist()),
             tuple(table["colour_names"].tolist()),
+            tuple(table["held_out"].tolist()),
             bool(table["rendered"]),
         )

@@ -172,7 +172,8 @@ class MatcherTraining:
         )
         scale = self.network.get_parameter("logit_scale").exp()
         category, colour = batch.categories.to(self._device), batch.colours.to(self._device)
-        contrast = contrastive_loss(images, captions, batch.true.to(self._device), scale)
+        true, possible = batch.true.to(self._device), batch.possible.to(self._device)
+        contrast = contrastive_loss(images, captions, true, possible, scale)
         naming = label_loss(scale * images @ names.T, scale * images @ colours.T, category, colour)
         heads = self._heads.loss(vectors, category, colour)
         right = (images @ names.T).argmax(dim=1) == category

@@ -61,7 +61,7 @@ def fit_word_tower(
         true = torch.from_numpy(writer.true_of(categories[drawn], colours[drawn], captions))
         images = F.normalize(tower.project(vectors[drawn]), dim=-1)
         texts = F.normalize(tower.encode_text(tower.tokenise([*captions.texts])), dim=-1)
-        loss = contrastive_loss(images, texts, true, tower.logit_scale.exp())
+        loss = contrastive_loss(images, texts, true, true, tower.logit_scale.exp())
         optimiser.zero_grad(set_to_none=True)
         loss.backward()
         optimiser.step()
