@@ -62,7 +62,7 @@ def main() -> None:
     matcher, detector = train_matcher(given), train_detector(given)
     if given.install:
         install(matcher, detector)
-        measure = ("perception", "calibrate", given.out / "val", "--images", 250, "--widths", "160,320,640")
+        measure = ("perception", "calibrate", given.out / "val", "--images", 600, "--widths", "160,320,640")
         zavis(*measure, "--out", WEIGHTS / "zavis-tiny.eyes.yaml")
         seal_weights()
 

@@ -9,8 +9,8 @@ Eyes look at labelled images as they would in a mission.
   texts are the categories of the data, and T makes softmax(m / T) over them the likeliest for what boxes show.
 - The least confidence of a known landmark sets boxes that show their class apart from those that do not, by
   the greatest sum of both shares told rightly (Youden's index).
-- The least confidence of an ``unknown`` box is the one with which most things and landmarks are told: faint boxes are
-  false alarms more often than finds, and drive the other thresholds up.
+- The least confidence of an ``unknown`` box is the one with which most things are their name's first candidate and most
+  landmarks are told: faint boxes are false alarms more often than finds, and drive the other thresholds up.
 - T_o makes softmax(m / T_o) over the landmarks' names the likeliest for such furniture.
 """
 
@@ -53,6 +53,8 @@ class Calibration:
     """Highest scores in an image of names that nothing in it answers to."""
     recall: float
     """Share of the right pairs that reach m_t."""
+    first: int
+    """Names of what an image shows that bring it as their first candidate, over all images."""
     landmark_recall: float
     """Share of landmarks' boxes that reach the landmarks' threshold."""
     landmark_false: float
@@ -118,6 +120,7 @@ def calibrate(
         right,
         wrong,
         recall=float((right >= first.match).mean()),
+        first=pairs.told_first(first),
         landmark_recall=float((best[is_landmark] >= landmark).mean()),
         landmark_false=float((others >= landmark).mean()) if len(others) else 0.0,
         landmark_accuracy=float((told.argmax(axis=1) == truth[is_landmark]).mean()),
@@ -137,8 +140,8 @@ def _best(settle: Callable[..., Calibration]) -> Calibration:
 
 
 def _told(found: Calibration) -> float:
-    """Return how many things and landmarks pass their thresholds."""
-    return found.recall * len(found.right) + found.landmark_recall * found.landmarks
+    """Return how many things are the first candidate for their name, and how many landmarks pass."""
+    return found.first + found.landmark_recall * found.landmarks
 
 
 def _contrast(looks: Sequence[Look], texts: Sequence[str]) -> Contrast:
