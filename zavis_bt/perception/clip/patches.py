@@ -193,8 +193,8 @@ def _read(folder: Path, key: str | None) -> Patches | None:
     if not (folder / _TABLE).is_file() or not (folder / _PIXELS).is_file():
         return None
     with np.load(folder / _TABLE) as table:
-        if key is not None and str(table["key"]) != key:
-            return None
+        if "held_out" not in table or (key is not None and str(table["key"]) != key):
+            return None  # of another form, or of other data
         return Patches(
             np.load(folder / _PIXELS, mmap_mode="r"),
             table["frames"][:, 0],
