@@ -117,7 +117,7 @@ def _registry() -> Registry:
 def _signatures(files: list[Path]) -> list[Signature]:
     """Return the behaviours, and the trees that nodes of the files may call."""
     from zavis_bt.tree.faults import Faults
-    from zavis_bt.tree.library import Library, tree_signature
+    from zavis_bt.tree.includes import Library, tree_signature
     from zavis_bt.tree.loader import read_library
     from zavis_bt.tree.spec import Signature
 

@@ -15,7 +15,7 @@ from zavis_bt.tree.behaviour import Behaviour
 from zavis_bt.tree.controls import CONTROLS, SET
 from zavis_bt.tree.decorators import Assign, Call
 from zavis_bt.tree.faults import Mark
-from zavis_bt.tree.library import Library
+from zavis_bt.tree.includes import Library
 from zavis_bt.tree.ports import Port
 from zavis_bt.tree.scope import UNSET, Binding, Constant, Scope, Variable
 from zavis_bt.tree.spec import Argument, FileSpec, NodeSpec, Reference, TreeSpec

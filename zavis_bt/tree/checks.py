@@ -10,7 +10,7 @@ from zavis_bt.tree.condition import parse_condition
 from zavis_bt.tree.controls import SET
 from zavis_bt.tree.document import Element, Items, Scalar, Table
 from zavis_bt.tree.faults import Faults
-from zavis_bt.tree.library import Library
+from zavis_bt.tree.includes import Library
 from zavis_bt.tree.nodes import NAME, label
 from zavis_bt.tree.spec import Argument, FileSpec, NodeSpec, Reference, Signature, TreeSpec
 

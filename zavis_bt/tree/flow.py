@@ -13,7 +13,7 @@ from zavis_bt.errors import InputError, did_you_mean
 from zavis_bt.tree.condition import parse_condition
 from zavis_bt.tree.controls import SET
 from zavis_bt.tree.datatypes import assignable, type_name
-from zavis_bt.tree.library import Library
+from zavis_bt.tree.includes import Library
 from zavis_bt.tree.ports import Port
 from zavis_bt.tree.spec import Argument, NodeSpec, Reference, TreeSpec
 from zavis_bt.tree.variables import Symbol, symbols_of

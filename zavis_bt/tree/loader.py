@@ -12,8 +12,8 @@ from zavis_bt.tree.builder import Builder
 from zavis_bt.tree.checks import check_arguments, check_file_root, check_recursion
 from zavis_bt.tree.faults import Faults
 from zavis_bt.tree.flow import check_flow
+from zavis_bt.tree.includes import Library
 from zavis_bt.tree.inputs import TreeInput, inputs_of, root_values
-from zavis_bt.tree.library import Library
 from zavis_bt.tree.mocks import read_mocks
 from zavis_bt.tree.registry import Registry
 from zavis_bt.tree.spec import FileSpec, TreeSpec

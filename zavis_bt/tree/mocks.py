@@ -26,8 +26,8 @@ from zavis_bt.tree.arguments import value_fault
 from zavis_bt.tree.behaviour import Behaviour
 from zavis_bt.tree.document import Element, Items, Scalar, Table, read_document
 from zavis_bt.tree.faults import Faults, Mark
+from zavis_bt.tree.includes import FORMAT, Library, tree_signature
 from zavis_bt.tree.leaves import EPSILON
-from zavis_bt.tree.library import FORMAT, Library, tree_signature
 from zavis_bt.tree.ports import In, Out, Port
 from zavis_bt.tree.spec import Signature
 

@@ -15,7 +15,7 @@ from typing import Any
 from zavis_bt.tree.controls import CONTROLS, LEAF_SHORTHAND, SET, SET_DOC, Control
 from zavis_bt.tree.datatypes import is_union, type_name
 from zavis_bt.tree.declarations import FIELDS
-from zavis_bt.tree.library import FORMAT
+from zavis_bt.tree.includes import FORMAT
 from zavis_bt.tree.ports import Port
 from zavis_bt.tree.spec import Signature
 

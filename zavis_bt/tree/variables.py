@@ -10,7 +10,7 @@ from typing import Any, Literal
 from zavis_bt.tree.controls import SET
 from zavis_bt.tree.datatypes import assignable, type_name
 from zavis_bt.tree.faults import Mark
-from zavis_bt.tree.library import Library
+from zavis_bt.tree.includes import Library
 from zavis_bt.tree.spec import Argument, Declared, NodeSpec, Reference, TreeSpec
 
 Role = Literal["param", "in", "out", "global", "variable", "item"]
