@@ -21,9 +21,12 @@ FLAGS = """
 """
 
 
-def executable() -> str | None:
-    """Return the path of a Chromium, or None."""
-    return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+def executable() -> str:
+    """Return the path of a Chromium."""
+    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if found is None:
+        raise RuntimeError("no Chromium on this machine (install it, or leave these tests out: -m 'not browser')")
+    return found
 
 
 class Page:
