@@ -79,7 +79,7 @@ def fuzz(subject: Subject, size: int, seed: int) -> Result:
             if rng.random() < 0.2:
                 result.recoveries += 1
                 result.worst = max(result.worst, recover(subject, rng))
-        except Exception as error:  # a decoder may raise nothing at all; whatever it is, it is told
+        except Exception as error:  # what is measured: a decoder must never raise, whatever the type
             result.error = f"{type(error).__name__}: {error} at {data!r}"
             break
         result.eaten += len(data)

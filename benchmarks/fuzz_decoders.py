@@ -39,8 +39,9 @@ class Subject(ABC):
     def take(self, data: bytes) -> None:
         """Give it bytes as they would come from the line. Must never raise."""
 
-    def settle(self) -> None:  # noqa: B027  # a hook for the few decoders that time out
-        """Let the line be silent for a while."""
+    def settle(self) -> None:
+        """Let the line be silent for a while: reads of it end without a byte."""
+        self.take(b"")
 
     @abstractmethod
     def sound(self, rng: np.random.Generator) -> bytes:

@@ -42,7 +42,7 @@ def open_bus(settings: PanTiltSettings) -> can.BusABC:
         options |= {"fd": False, "hop_limit": 0}
     try:
         bus = can.Bus(interface=settings.interface, channel=settings.channel, **{**options, **settings.options})
-    except Exception as error:  # python-can's back ends raise whatever they meet: OSError, NameError, TypeError, …
+    except Exception as error:  # python-can's back ends let OSError, NameError, TypeError, … through
         raise Trouble(explain(error, settings)) from error
     if settings.interface == "udp_multicast":
         _hear_own_group_only(bus)

@@ -58,7 +58,7 @@ class Draws:
         return state
 
 
-_ufunc = vectorize(cache=True)  # type: ignore[no-untyped-call]  # numba ships no types
+_ufunc = vectorize(cache=True)
 
 
 @_ufunc

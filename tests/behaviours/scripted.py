@@ -10,7 +10,7 @@ import numpy as np
 
 from zavis_bt.geometry import transform_camera_to_map
 from zavis_bt.mapping import Mapper
-from zavis_bt.mission import DoneJob, MissionJournal
+from zavis_bt.mission import InlineJobs, MissionJournal
 from zavis_bt.planning import Navigator
 from zavis_bt.tree import Behaviour, Status
 from zavis_bt.types import (
@@ -184,22 +184,6 @@ def viewpoint(x: float = 1.0, y: float = 0.0, landmark: int = 0) -> Viewpoint:
     return Viewpoint(Pose2D(x, y, 0.0), (x + 1.0, y, 0.7), 0.5, landmark, "desk")
 
 
-class NowJobs:
-    """Does the work at once."""
-
-    def submit(self, label: str, work: Any, *args: Any) -> DoneJob[Any]:
-        try:
-            return DoneJob(work(*args))
-        except Exception as error:  # raised again by whoever asks for the result, as the real executors do
-            failure = error
-
-            class Failed(DoneJob[Any]):
-                def result(self) -> Any:
-                    raise failure
-
-            return Failed(None)
-
-
 class ScriptedHuman:
     """Answers from a list, after so many ticks."""
 
@@ -258,7 +242,7 @@ class Stage:
         offered = {
             "robot": self.robot,
             "clock": self.robot,
-            "jobs": NowJobs(),
+            "jobs": InlineJobs(self.robot, latency={}),
             "mapper": self.mapper,
             "navigator": self.navigator,
             "perceiver": self.perceiver,

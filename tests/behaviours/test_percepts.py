@@ -3,11 +3,12 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from scripted import NowJobs, Stage
+from scripted import Stage
 
 from behaviours import Detect, Scan
 from behaviours._percepts import Percepts
 from zavis_bt.errors import DeviceError
+from zavis_bt.mission import InlineJobs
 from zavis_bt.tree import Status
 from zavis_bt.types import Event, RgbdFrame
 
@@ -71,7 +72,7 @@ def test_any_other_failure_of_perception_is_not_hidden(stage):
         raise ValueError("a bug")
 
     stage.perceiver.perceive = broken
-    percepts = Percepts(stage.perceiver, stage.mapper, NowJobs(), stage.journal, "cup")
+    percepts = Percepts(stage.perceiver, stage.mapper, InlineJobs(stage.robot, latency={}), stage.journal, "cup")
     percepts.submit(stage.robot.camera.frame())
     with pytest.raises(ValueError, match="a bug"):
         percepts.poll()

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import random
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -33,17 +32,6 @@ def devices() -> Iterator[SimulatedDevices]:
         yield made
 
 
-@pytest.fixture(scope="module")
-def multicast() -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as line:
-        try:
-            group = socket.inet_aton("239.74.163.2") + socket.inet_aton("0.0.0.0")
-            line.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, group)
-        except OSError as error:
-            pytest.skip(f"no multicast here: {error}")
-
-
-@pytest.mark.usefixtures("multicast")
 def test_commands_come_through_a_pipe_and_quit_ends(tmp_path):
     path = tmp_path / "my.robot.yaml"
     done = subprocess.run(
@@ -61,7 +49,6 @@ def test_commands_come_through_a_pipe_and_quit_ends(tmp_path):
     assert sum(port in done.stdout for port in ports) == 3
 
 
-@pytest.mark.usefixtures("multicast")
 def test_it_serves_on_without_standard_input_until_it_is_told_to_end(tmp_path):
     path = tmp_path / "my.robot.yaml"
     serving = subprocess.Popen(
@@ -85,7 +72,6 @@ def test_it_serves_on_without_standard_input_until_it_is_told_to_end(tmp_path):
         serving.communicate()
 
 
-@pytest.mark.usefixtures("multicast")
 def test_at_a_terminal_there_is_a_status_and_faults_are_typed():
     with person("sim", "serve", "flat", *FREE, *own_bus()) as somebody:
         assert somebody.sees("camera ○"), somebody.seen

@@ -1,9 +1,6 @@
 from __future__ import annotations
 
-import importlib.util
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -147,22 +144,6 @@ def test_detectors_classes_decide_which_landmarks_are_known() -> None:
     known, unknown = split_landmarks(names, ("chair", "tv", "couch", "diningtable"))
     assert known == ("tv monitor", "sofa", "dining table")
     assert unknown == ("desk", "bed")
-
-
-@pytest.mark.skipif(importlib.util.find_spec("torch") is None, reason="without torch neural eyes cannot be asked for")
-def test_torch_is_loaded_for_neural_eyes_only() -> None:
-    code = """
-import sys
-import zavis_bt.cli.main, zavis_bt.cli.simulate, zavis_bt.cli.bench, zavis_bt.cli.seeing
-import zavis_bt.perception.neural, zavis_bt.perception.eyes_file, zavis_bt.perception.calibrating
-from zavis_bt.cli.seeing import check_perception, eyes_of
-import numpy
-check_perception("neural")
-eyes_of("simulated", ("sofa",), lambda name: numpy.random.default_rng(0), lambda a, b: 0.0)
-loaded = {"torch", "torchvision", "open_clip", "transformers"} & set(sys.modules)
-assert not loaded, loaded
-"""
-    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_relative_score_is_the_softmaxs_logarithm() -> None:

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -169,3 +171,18 @@ def test_networks_that_come_along_tell_furniture_and_bear_a_search() -> None:
     ]
     assert np.mean(found) > 0.5
     assert sum(len(perceiver.perceive(view, "mug").sightings) for view in views) >= 1
+
+
+def test_torch_is_loaded_for_neural_eyes_only() -> None:
+    code = """
+import sys
+import zavis_bt.cli.main, zavis_bt.cli.simulate, zavis_bt.cli.bench, zavis_bt.cli.seeing
+import zavis_bt.perception.neural, zavis_bt.perception.eyes_file, zavis_bt.perception.calibrating
+from zavis_bt.cli.seeing import check_perception, eyes_of
+import numpy
+check_perception("neural")
+eyes_of("simulated", ("sofa",), lambda name: numpy.random.default_rng(0), lambda a, b: 0.0)
+loaded = {"torch", "torchvision", "open_clip", "transformers"} & set(sys.modules)
+assert not loaded, loaded
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)

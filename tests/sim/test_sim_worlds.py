@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -116,9 +117,9 @@ def test_a_starter_world_is_right_and_nothing_is_overwritten(tmp_path: Path) -> 
         write_starter("home", tmp_path / "none")
 
 
-def world_of(picture: list[str], **rest: object) -> World:
+def world_of(picture: list[str], **rest: Any) -> World:
     states = np.array([[FREE if mark == "." else OCCUPIED for mark in line] for line in reversed(picture)], np.int8)
-    return World("w", GridMap(states, 0.5, (0.0, 0.0)), 2.5, **rest)  # type: ignore[arg-type]  # fields by name
+    return World("w", GridMap(states, 0.5, (0.0, 0.0)), 2.5, **rest)
 
 
 DIVIDED = ["########", "#..##..#", "#..##..#", "########"]

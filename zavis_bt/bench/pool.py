@@ -133,7 +133,7 @@ def _serve(connection: Connection[object, tuple[int, T] | None], work: Callable[
     while (job := connection.recv()) is not None:
         try:
             outcome: R | Crash = work(job[1])
-        except Exception as error:  # whatever an item raises is that item's outcome
+        except Exception as error:  # one item's bug is its outcome: it must not end the worker and the items that wait
             outcome = Crash(f"{type(error).__name__}: {error}".splitlines()[0], traceback.format_exc())
         connection.send(outcome)
 

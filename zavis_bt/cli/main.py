@@ -56,7 +56,7 @@ class Guarded(TyperGroup):
         except BrokenPipeError:  # the reader of our output has gone: nothing to say and nobody to say it to
             sys.stderr.close()
             raise typer.Exit(USER_ERROR) from None
-        except Exception as error:  # the one place where a bug is told from a user's error
+        except Exception as error:  # a bug, of any type: it gets its own exit code, here only
             if type(error).__module__.split(".")[0] in ("typer", "click"):
                 raise
             traceback.print_exc()

@@ -135,8 +135,9 @@ def report(found: Calibration, false_alarms: float, console: Console) -> None:
     from rich.table import Table
 
     table = Table(box=None, header_style="dim")
-    for name, justify in (("threshold", "left"), ("value", "right"), ("reaches", "left")):
-        table.add_column(name, justify=justify)  # type: ignore[arg-type]  # a literal, which a loop forgets
+    table.add_column("threshold")
+    table.add_column("value", justify="right")
+    table.add_column("reaches")
     limits = found.thresholds
     what = f"{found.recall:.0%} of what is detected is told; a false alarm in {false_alarms:.1%} of the images"
     table.add_row("match (m_t)", f"{limits.match:.2f}", what)

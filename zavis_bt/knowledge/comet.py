@@ -129,7 +129,7 @@ def _load(folder: Path, device: str) -> tuple[Any, Any]:  # transformers' own ty
             loaded = BartForConditionalGeneration.from_pretrained(
                 folder, local_files_only=True, output_loading_info=True
             )
-    except Exception as error:  # whatever transformers, torch and tokenizers raise for files that are none of theirs
+    except Exception as error:  # tokenizers raises Exception itself for a broken file, the others whatever they meet
         raise InputError(
             f"{folder}: cannot be loaded as COMET-BART: {_first_line(error)} (zavis models check)"
         ) from error

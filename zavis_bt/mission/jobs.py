@@ -50,7 +50,7 @@ class InlineJobs:
         ready_at = self._clock.now() + self._latency.get(label, 0.0)
         try:
             value = work(*args)
-        except Exception as error:  # the work's own failure belongs to whoever asks for the result
+        except Exception as error:  # as an executor's future does: raised again for whoever asks for the result
             failure = error
 
             def fail() -> T:

@@ -140,7 +140,7 @@ class Mission:
         for observer in list(self._observers):
             try:
                 call(observer)
-            except Exception:  # whoever watches must not stop what is watched
+            except Exception:  # a viewer's bug must not end the robot's mission: it is logged and dropped
                 _LOG.exception("%s failed and is dropped", type(observer).__name__)
                 self._observers.remove(observer)
 

@@ -21,7 +21,7 @@ _SLOW = 0.5  # least time between updates of what is costly and changes all the 
 
 def pack(command: Mapping[str, Any]) -> bytes:
     """Return a command as the page reads it."""
-    import umsgpack  # type: ignore[import-untyped]  # meshcat's message format; has no stubs
+    import umsgpack  # meshcat's message format
 
     return bytes(umsgpack.packb(command))
 

@@ -121,7 +121,7 @@ def _buffers(attributes: dict[str, NDArray[np.float32]], faces: NDArray[np.uint3
 
 
 def _array(values: NDArray[np.float32] | NDArray[np.uint32]) -> Json:
-    from umsgpack import Ext  # type: ignore[import-untyped]  # meshcat's message format; has no stubs
+    from umsgpack import Ext  # meshcat's message format
 
     floats = values.dtype == np.float32
     return {

@@ -6,7 +6,7 @@ from dataclasses import astuple, dataclass
 from functools import cache
 from struct import Struct
 from struct import error as StructError
-from typing import Annotated, get_type_hints
+from typing import Annotated, Any, get_type_hints
 
 from drivers.pioneer.codec.errors import PacketError
 from drivers.pioneer.codec.framing import encode
@@ -146,7 +146,7 @@ def decode_config(payload: bytes) -> Config:
     if payload[:1] != bytes((CONFIG_TYPE,)):
         raise PacketError("is no CONFIGpac")
     rest = payload[1:]
-    values: dict[str, int | str] = {}
+    values: dict[str, Any] = {}  # texts and numbers, as `_layout` says
     for name, number in _layout():
         if number is None:
             text, _, rest = rest.partition(b"\0")
@@ -154,4 +154,4 @@ def decode_config(payload: bytes) -> Config:
         else:
             values[name] = number.unpack_from(rest)[0] if len(rest) >= number.size else 0
             rest = rest[number.size :]
-    return Config(**values)  # type: ignore[arg-type]  # _layout() says which fields are texts
+    return Config(**values)

@@ -59,7 +59,7 @@ class SafeRobot:
         for hold in (self._base.hold, self.pan_tilt.hold):
             try:
                 hold()
-            except Exception:  # a device that breaks its promise must not keep the other one from being stopped
+            except Exception:  # whatever one device raises, the other one must still be stopped
                 _LOG.exception("%s raised", hold)
 
     def resume(self) -> None:
