@@ -15,6 +15,7 @@ from zavis_bt.perception.clip.crops import Preprocessing
 from zavis_bt.perception.clip.folding import fold_batch_norms
 from zavis_bt.perception.clip.loading import Parts, build_untrained, load_parts, logit_scale
 from zavis_bt.perception.clip.prompts import photo_of
+from zavis_bt.perception.clip.towers import encode_image, encode_text
 
 _BATCH = 64  # crops or texts at a time: ViT-B/32 stays far below 2 GB
 _CACHED = 4096  # texts whose vectors are kept
@@ -109,11 +110,9 @@ class ClipModel:
     def _encode_batch(self, crops: Sequence[NDArray[np.uint8]]) -> Tensor:
         images = self.preprocessing.apply(crops).to(self._device)
         images = images.contiguous(memory_format=torch.channels_last)
-        vectors: Tensor = self._network.encode_image(images)  # type: ignore[operator]  # open_clip's method
-        return F.normalize(vectors, dim=-1)
+        return F.normalize(encode_image(self._network, images), dim=-1)
 
     @torch.inference_mode()
     def _encode_prompts(self, prompts: list[str]) -> Tensor:
         tokens = self._tokenizer(prompts).to(self._device)
-        vectors: Tensor = self._network.encode_text(tokens)  # type: ignore[operator]  # open_clip's method
-        return F.normalize(vectors, dim=-1)
+        return F.normalize(encode_text(self._network, tokens), dim=-1)

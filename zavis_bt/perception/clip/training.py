@@ -22,6 +22,7 @@ from zavis_bt.perception.clip.loading import Parts
 from zavis_bt.perception.clip.loss import contrastive_loss
 from zavis_bt.perception.clip.patches import Patches
 from zavis_bt.perception.clip.settings import MatcherSettings
+from zavis_bt.perception.clip.towers import encode_image, encode_text
 from zavis_bt.perception.clip.vocabulary import Vocabulary
 from zavis_bt.perception.training.kept_state import KeptState
 from zavis_bt.perception.training.precision import mixed_precision
@@ -160,13 +161,12 @@ class MatcherTraining:
 
     def _loss(self, batch: CropBatch, share: float) -> tuple[Tensor, dict[str, float]]:
         with mixed_precision(self._device):
-            read = self.network.encode_image(batch.images.to(self._device))  # type: ignore[operator]  # open_clip's
-        vectors: Tensor = read.float()
+            vectors = encode_image(self.network, batch.images.to(self._device)).float()
         images = F.normalize(vectors, dim=-1)
         texts = dict.fromkeys((*self._names, *self._colours, *batch.texts))
         rows = {text: row for row, text in enumerate(texts)}
         tokens = self._parts.tokenizer([*texts]).to(self._device)
-        encoded = F.normalize(self.network.encode_text(tokens), dim=-1)  # type: ignore[operator]  # open_clip's
+        encoded = F.normalize(encode_text(self.network, tokens), dim=-1)
         names, colours, captions = (
             encoded[[rows[text] for text in some]] for some in (self._names, self._colours, batch.texts)
         )
@@ -200,7 +200,7 @@ class MatcherTraining:
     @torch.no_grad()
     def _dimension(self) -> int:
         tokens = self._parts.tokenizer(["thing"]).to(self._device)
-        return int(self.network.encode_text(tokens).shape[1])  # type: ignore[operator]  # open_clip's
+        return encode_text(self.network, tokens).shape[1]
 
 
 def _optimiser(network: nn.Module, heads: nn.Module, settings: MatcherSettings) -> torch.optim.AdamW:

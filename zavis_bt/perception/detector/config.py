@@ -105,9 +105,9 @@ class DetectorConfig:
         """Number of mixtures that the method has: J, or 1."""
         return self.mixtures if self.method == "zavis" else 1
 
-    def with_choice(self, **changes: float) -> DetectorConfig:
-        """Return a copy that chooses its boxes otherwise."""
-        return replace(self, choice=replace(self.choice, **changes))  # type: ignore[arg-type]  # most is an int
+    def with_choice(self, **changes: Any) -> DetectorConfig:
+        """Return a copy that chooses its boxes otherwise; ``changes`` are fields of `Choice`."""
+        return replace(self, choice=replace(self.choice, **changes))
 
     def to_json(self) -> str:
         """Return the description as text."""

@@ -38,7 +38,8 @@ def load_detector(path: Path, device: str = "cpu") -> tuple[DetectorNetwork, dic
     try:
         with safe_open(path, framework="pt", device=device) as opened:
             header = opened.metadata() or {}
-            tensors = {name: opened.get_tensor(name) for name in opened.keys()}  # noqa: SIM118  # no mapping
+            names = opened.keys()
+            tensors = {name: opened.get_tensor(name) for name in names}
     except FileNotFoundError as error:
         raise InputError(f"{path}: no such file (zavis detector export makes one; zavis models list)") from error
     except (SafetensorError, OSError) as error:
@@ -56,4 +57,4 @@ def load_detector(path: Path, device: str = "cpu") -> tuple[DetectorNetwork, dic
         ) from error
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    return network.to(device, memory_format=torch.channels_last).eval(), facts  # type: ignore[call-overload]  # torch's stubs lack it
+    return network.to(device).to(memory_format=torch.channels_last).eval(), facts
