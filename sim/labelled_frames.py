@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.appearance import SHAPES, THINGS, CameraEffects, random_frame, random_scene
+from sim.appearance import SHAPES, THINGS, CameraEffects, random_frame, random_scene, random_standing_frame
 from sim.frame import SimFrame
 from sim.render_labels import Label
 from zavis_bt.errors import InputError, did_you_mean
@@ -24,6 +24,7 @@ from zavis_bt.types import Box, CameraIntrinsics
 
 _QUALITY = 92  # of the JPEG files
 _FRAMES_A_ROOM = 4
+_STANDING = 0.35  # share of the views that aim at nothing
 _FILE = "annotations.json"
 _RENDERED = "rendered by zavis_bt's simulator"
 
@@ -118,7 +119,10 @@ def frames_of_room(recipe: FrameRecipe, room: int) -> Iterator[tuple[SimFrame, N
     scene = random_scene(rng, recipe.categories)
     camera = CameraIntrinsics.from_fov(recipe.width, recipe.width * 3 // 4, recipe.horizontal_fov)
     for _ in range(_FRAMES_A_ROOM):
-        frame = random_frame(rng, scene, camera, recipe.distance)
+        if rng.random() < _STANDING:
+            frame = random_standing_frame(rng, scene, camera)
+        else:
+            frame = random_frame(rng, scene, camera, recipe.distance)
         yield frame, CameraEffects.drawn(rng, recipe.width).apply(frame.rgb, rng)
 
 

@@ -9,7 +9,7 @@ from sim.appearance.room import Covering, RoomLook
 from sim.appearance.shape import Shape
 
 if TYPE_CHECKING:
-    from sim.appearance.random_rooms import random_frame, random_scene, random_world
+    from sim.appearance.random_rooms import random_frame, random_scene, random_standing_frame, random_world
 
 __all__ = [
     "SHAPES",
@@ -23,6 +23,7 @@ __all__ = [
     "look_of",
     "random_frame",
     "random_scene",
+    "random_standing_frame",
     "random_world",
     "shape_of",
 ]

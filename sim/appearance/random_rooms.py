@@ -18,7 +18,8 @@ from zavis_bt.geometry import transform_camera_to_map
 from zavis_bt.types import FREE, OCCUPIED, CameraIntrinsics, CameraSpec, GridMap, Pose2D
 
 _WALL, _CELL = 0.1, 0.05  # [m]
-_SPREAD = (0.85, 1.2)  # of sizes about the typical one
+_SCALE, _PROPORTION = 0.17, 0.17  # standard deviation of the logarithms of a thing's size and of each of its sides
+_FARTHEST = 0.6  # that a logarithm is from a typical thing's
 _NAMED = 0.6  # share of painted things whose colour is any of the named ones, not one of the usual
 _ON_FLOOR = 0.15  # share of small things that lie on the floor
 _AT_WALL, _BACK_TO_WALL = 0.7, 0.95  # share of furniture that stands at a wall: with no front, and with one
@@ -61,6 +62,8 @@ def random_frame(
 ) -> SimFrame:
     """Return a view of a scene in which one of its things is about in the middle.
 
+    `random_standing_frame` aims at nothing.
+
     Args:
         rng: Source of the draws.
         scene: What there is; its world has a free floor around the origin, as `random_world` makes it.
@@ -79,11 +82,54 @@ def random_frame(
     for _ in range(_TRIES):
         bearing, reach = rng.uniform(-math.pi, math.pi), size + rng.uniform(*distance)
         pose = Pose2D(x - reach * math.cos(bearing), y - reach * math.sin(bearing), bearing + rng.normal(0, 0.12))
-        if scene.world.grid.state_at(pose.x, pose.y) == FREE and not _within(pose, things, eye):
+        if _stands_free(pose, scene, eye):
             break
     tilt = math.atan2(z - eye, math.hypot(pose.x - x, pose.y - y)) + rng.normal(0, 0.08)
+    return _frame(scene, intrinsics, pose, eye, float(np.clip(tilt, -1.2, 0.6)))
+
+
+def random_standing_frame(
+    rng: np.random.Generator,
+    scene: Scene,
+    intrinsics: CameraIntrinsics,
+    gap: tuple[float, float] = (0.35, 1.5),
+    height: tuple[float, float] = (0.6, 1.4),
+) -> SimFrame:
+    """Return a view of a scene as a robot has it that stands before furniture and looks about.
+
+    Nothing is aimed at: most of the furniture is beyond the image's border, and flat things on it are seen edge-on.
+
+    Args:
+        rng: Source of the draws.
+        scene: What there is; without furniture the view is one of `random_frame`.
+        intrinsics: The camera.
+        gap: Between the camera and the furniture's outline [m].
+        height: Of the camera [m].
+    """
+    pieces = scene.world.furniture
+    if not pieces:
+        return random_frame(rng, scene, intrinsics, height=height)
+    eye = float(rng.uniform(*height))
+    for _ in range(_TRIES):
+        piece = pieces[int(rng.integers(len(pieces)))]
+        bearing = rng.uniform(-math.pi, math.pi)
+        along, aside = abs(math.cos(bearing - piece.yaw)), abs(math.sin(bearing - piece.yaw))
+        outline = min(piece.length / 2 / max(along, 1e-9), piece.width / 2 / max(aside, 1e-9))
+        reach = outline + rng.uniform(*gap)
+        x, y = piece.x - reach * math.cos(bearing), piece.y - reach * math.sin(bearing)
+        pose = Pose2D(x, y, bearing + rng.normal(0, 0.45))
+        if _stands_free(pose, scene, eye):
+            break
+    return _frame(scene, intrinsics, pose, eye, float(rng.uniform(-0.7, 0.1)))
+
+
+def _stands_free(pose: Pose2D, scene: Scene, eye: float) -> bool:
+    return scene.world.grid.state_at(pose.x, pose.y) == FREE and not _within(pose, scene.things, eye)
+
+
+def _frame(scene: Scene, intrinsics: CameraIntrinsics, pose: Pose2D, eye: float, tilt: float) -> SimFrame:
     spec = CameraSpec(intrinsics, 0.0, eye, 0.1, 20.0, 10.0)
-    transform = transform_camera_to_map(pose, 0.0, float(np.clip(tilt, -1.2, 0.6)), spec)
+    transform = transform_camera_to_map(pose, 0.0, tilt, spec)
     return SimFrame(scene, intrinsics, transform, transform, 0.0, (0.1, 20.0))
 
 
@@ -104,12 +150,18 @@ def _colour(rng: np.random.Generator, shape: Shape) -> str | None:
     return str(rng.choice(list(COLOURS))) if rng.random() < _NAMED and shape.painted else None
 
 
+def _size(rng: np.random.Generator, shape: Shape) -> list[float]:
+    """Return sides about those of a typical thing: in homes, scale and proportions of a category vary by a fifth."""
+    logarithms = rng.normal(0, _SCALE) + rng.normal(0, _PROPORTION, 3)
+    return (np.array(shape.size) * np.exp(logarithms.clip(-_FARTHEST, _FARTHEST))).tolist()
+
+
 def _piece(
     rng: np.random.Generator, category: str, number: int, width: float, depth: float, others: Sequence[Furniture]
 ) -> Furniture | None:
     """Return a piece of furniture, most often at a wall and with its back to it, or None if there is no place."""
     shape = shape_of(category)
-    length, across, height = (np.array(shape.size) * rng.uniform(*_SPREAD, 3)).tolist()
+    length, across, height = _size(rng, shape)
     look = _colour(rng, shape), int(rng.integers(1 << 30))
     at_wall = rng.random() < (_BACK_TO_WALL if shape.has_front else _AT_WALL)
     for _ in range(_TRIES):
@@ -143,7 +195,7 @@ def _thing(
 ) -> WorldObject | None:
     """Return a small thing on a piece of furniture or on the floor, or None if there is no place."""
     shape = shape_of(category)
-    sizes = (np.array(shape.size) * rng.uniform(*_SPREAD) * rng.uniform(0.93, 1.07, 3)).tolist()
+    sizes = _size(rng, shape)
     bearers = [piece for piece in furniture if shape_of(piece.category).bears]
     look = _colour(rng, shape), int(rng.integers(1 << 30))
     for _ in range(_TRIES):

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from seen_worlds import look, piece, room, snapshot, thing
 
-from sim.appearance import CameraEffects, RoomLook, random_frame, random_scene, random_world, shape_of
+from sim.appearance import (
+    CameraEffects,
+    RoomLook,
+    random_frame,
+    random_scene,
+    random_standing_frame,
+    random_world,
+    shape_of,
+)
 from sim.appearance.facing import orientations
 from sim.camera import SimCamera
 from sim.render_labels import pixel_boxes
@@ -123,6 +131,38 @@ def test_random_furniture_shows_its_front():
             ahead.append(scene.world.grid.state_at(*(box[:2] + reach * front)) == FREE)
     assert len(ahead) > 80
     assert np.mean(ahead) > 0.95
+
+
+def test_sizes_and_proportions_of_a_category_vary_by_a_fifth():
+    vases = [
+        np.log(one.size)
+        for seed in range(25)
+        for one in random_world(np.random.default_rng(seed), ["vase", "desk"]).objects
+    ]
+    sides = np.array(vases) - np.log(shape_of("vase").size)
+    assert abs(sides.mean()) < 0.1
+    assert 0.12 < sides.mean(axis=1).std() < 0.3
+    assert 0.12 < sides[:, 2].std() < 0.35
+
+
+def test_who_stands_before_furniture_sees_parts_of_it_and_aims_at_nothing():
+    rng = np.random.default_rng(8)
+    cut, middles = 0, []
+    for _ in range(40):
+        scene = random_scene(rng, ["bed", "sofa", "desk", "mug"])
+        frame = random_standing_frame(rng, scene, CAMERA)
+        x, y = frame.transform_camera_to_map[:2, 3]
+        assert scene.world.grid.state_at(x, y) == FREE
+        pieces = [one for one in frame.instances if one.is_furniture]
+        cut += any(one.full_box.x0 < 0 or one.full_box.x1 > CAMERA.width for one in pieces)
+        middles += [(one.box.x0 + one.box.x1) / 2 / CAMERA.width for one in pieces]
+    assert cut > 20
+    assert np.std(middles) > 0.15
+
+
+def test_a_room_without_furniture_can_be_looked_at():
+    rng = np.random.default_rng(4)
+    assert random_standing_frame(rng, random_scene(rng, ["mug"]), CAMERA).labels
 
 
 def test_what_grows_has_its_own_colours():
