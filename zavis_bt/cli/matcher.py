@@ -104,6 +104,25 @@ def widen(
 
 
 @app.command()
+def average(
+    models: Annotated[list[str], typer.Argument(metavar="MODEL...", help="Folders of trainings, or a shipped model.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the mean.")],
+) -> None:
+    """Write the mean of models that trained on from the same weights; it is right more often than each of them."""
+    from zavis_bt.perception.clip.averaging import averaged_facts, averaged_weights
+    from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
+    from zavis_bt.perception.clip.writing import write_model
+
+    if (out / CONFIG).exists():
+        raise InputError(f"--out: {out} holds a model (name a new folder)")
+    parts = [load_parts(model, None) for model in models]
+    weights = averaged_weights([one.network.state_dict() for one in parts])
+    facts = averaged_facts([read_facts(model) for model in models])
+    write_model(out, model_config(models[-1]), parts[-1].preprocessing, weights, facts)
+    typer.echo(f"written: {out}")
+
+
+@app.command()
 def lit(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The --out folder of a training that has ended.")],
     words: Annotated[Path | None, typer.Option(help="JSON of synonyms and groups; a home's if not given.")] = None,

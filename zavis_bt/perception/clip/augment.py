@@ -17,11 +17,11 @@ class Augmentation:
 
     shift: float = 0.07
     """Standard deviation of each edge of the box, as a share of its side."""
-    brightness: float = 0.07
-    """Most that is added or taken, as a share of half the range: much more, and white is grey."""
-    contrast: float = 0.1
-    tint: float = 0.03
-    """Most that the factor of all channels, and of each, differs from 1; colours must stay what they are called."""
+    brightness: float = 0.15
+    contrast: float = 0.15
+    tint: float = 0.04
+    """Most that the factor of all channels (contrast) and of each (tint) differs from 1; brightness is added, as a
+    share of half the range. With weaker ones, colours are told worse that a category was never shown in."""
     repainted: float = 0.2
     """Share of crops, of what comes in many colours, that are shown in others, which have no name then."""
     coarse: float = 0.3
