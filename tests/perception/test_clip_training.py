@@ -46,7 +46,7 @@ def patches(tmp_path_factory: pytest.TempPathFactory) -> Patches:
     torch.set_num_threads(1)
     folder = tmp_path_factory.mktemp("matcher")
     recipe = FrameRecipe(seed=91, width=160, categories=("sofa", "fridge", "plant"), least_side=6.0)
-    list(write_frames(folder / "data", 12, recipe))
+    list(write_frames(folder / "data", 24, recipe))
     return collect_patches(open_dataset(folder / "data"), folder / "patches", 64)
 
 
