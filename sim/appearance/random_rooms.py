@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -79,11 +79,12 @@ def random_frame(
         z = thing.z + thing.size[2] / 2 if isinstance(thing, WorldObject) else thing.height / 2
         size = math.hypot(thing.length, thing.width) if isinstance(thing, Furniture) else 0.0
     eye = float(rng.uniform(*height))
-    for _ in range(_TRIES):
+
+    def drawn() -> Pose2D:
         bearing, reach = rng.uniform(-math.pi, math.pi), size + rng.uniform(*distance)
-        pose = Pose2D(x - reach * math.cos(bearing), y - reach * math.sin(bearing), bearing + rng.normal(0, 0.12))
-        if _stands_free(pose, scene, eye):
-            break
+        return Pose2D(x - reach * math.cos(bearing), y - reach * math.sin(bearing), bearing + rng.normal(0, 0.12))
+
+    pose = _free_pose(scene, eye, drawn)
     tilt = math.atan2(z - eye, math.hypot(pose.x - x, pose.y - y)) + rng.normal(0, 0.08)
     return _frame(scene, intrinsics, pose, eye, float(np.clip(tilt, -1.2, 0.6)))
 
@@ -110,21 +111,27 @@ def random_standing_frame(
     if not pieces:
         return random_frame(rng, scene, intrinsics, height=height)
     eye = float(rng.uniform(*height))
-    for _ in range(_TRIES):
+
+    def drawn() -> Pose2D:
         piece = pieces[int(rng.integers(len(pieces)))]
         bearing = rng.uniform(-math.pi, math.pi)
         along, aside = abs(math.cos(bearing - piece.yaw)), abs(math.sin(bearing - piece.yaw))
         outline = min(piece.length / 2 / max(along, 1e-9), piece.width / 2 / max(aside, 1e-9))
         reach = outline + rng.uniform(*gap)
         x, y = piece.x - reach * math.cos(bearing), piece.y - reach * math.sin(bearing)
-        pose = Pose2D(x, y, bearing + rng.normal(0, 0.45))
-        if _stands_free(pose, scene, eye):
-            break
+        return Pose2D(x, y, bearing + rng.normal(0, 0.45))
+
+    pose = _free_pose(scene, eye, drawn)
     return _frame(scene, intrinsics, pose, eye, float(rng.uniform(-0.7, 0.1)))
 
 
-def _stands_free(pose: Pose2D, scene: Scene, eye: float) -> bool:
-    return scene.world.grid.state_at(pose.x, pose.y) == FREE and not _within(pose, scene.things, eye)
+def _free_pose(scene: Scene, eye: float, drawn: Callable[[], Pose2D]) -> Pose2D:
+    """Return the first pose drawn that is on free floor and in nothing, or the last of some if none is."""
+    for _ in range(_TRIES):
+        pose = drawn()
+        if scene.world.grid.state_at(pose.x, pose.y) == FREE and not _within(pose, scene.things, eye):
+            break
+    return pose
 
 
 def _frame(scene: Scene, intrinsics: CameraIntrinsics, pose: Pose2D, eye: float, tilt: float) -> SimFrame:
