@@ -160,7 +160,8 @@ def _colour(rng: np.random.Generator, shape: Shape) -> str | None:
 def _size(rng: np.random.Generator, shape: Shape) -> list[float]:
     """Return sides about those of a typical thing: in homes, scale and proportions of a category vary by a fifth."""
     logarithms = rng.normal(0, _SCALE) + rng.normal(0, _PROPORTION, 3)
-    return (np.array(shape.size) * np.exp(logarithms.clip(-_FARTHEST, _FARTHEST))).tolist()
+    sides: list[float] = (np.array(shape.size) * np.exp(logarithms.clip(-_FARTHEST, _FARTHEST))).tolist()
+    return sides
 
 
 def _piece(
