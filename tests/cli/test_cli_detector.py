@@ -24,14 +24,14 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_train_export_and_judge_on_drawn_rooms(tmp_path: Path) -> None:
     run, file = str(tmp_path / "run"), str(tmp_path / "detector.safetensors")
     short = ("--method", "faster_rcnn", "--iterations", "2", "--batch", "2", "--width", "64")
-    result = detector("train", "sim:8:3", "--out", run, "--known", "sofa,dining table,sink,bench,tv,oven", *short)
+    result = detector("train", "sim:24:3", "--out", run, "--known", "sofa,dining table,sink,bench,tv,oven", *short)
     assert result.exit_code == 0, result.exception
     assert len((tmp_path / "run" / "log.jsonl").read_text().splitlines()) == 0  # too short for a line
-    again = detector("train", "sim:8:3", "--out", run, "--known", "sofa,dining table,sink,bench,tv,oven", *short)
+    again = detector("train", "sim:24:3", "--out", run, "--known", "sofa,dining table,sink,bench,tv,oven", *short)
     assert isinstance(again.exception, InputError)
     assert "holds a training (go on with --resume" in str(again.exception)
     assert detector("export", run, file, "--width", "64", "--known-score", "0.2").exit_code == 0
-    judged = detector("eval", file, "sim:8:3", "--json", "--images", "2")
+    judged = detector("eval", file, "sim:24:3", "--json", "--images", "2")
     assert judged.exit_code == 0, judged.exception
     content = json.loads(judged.output)
     assert content["images"] == 2

@@ -115,6 +115,15 @@ def test_a_lost_link(tmp_path):
     recorded.assert_in_order("base: the link is lost (check the cable)")
 
 
+@pytest.fixture
+def attached():
+    """Children take signals as in a terminal: those of a suite run by nohup would outlive SIGHUP, as they are to."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.usefixtures("attached")
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])  # SIGINT: tests/cli
 def test_a_signal_ends_a_run_as_orderly_as_any_other_way(tmp_path, name):
     folder, number = tmp_path / "run", signal.Signals[name]
