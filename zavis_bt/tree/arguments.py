@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import inspect
+import operator
 import typing
-from functools import lru_cache
 from types import NoneType
 from typing import Annotated, Any
 
@@ -70,7 +71,7 @@ def _lower(text: str) -> str:
     return text[:1].lower() + text[1:]
 
 
-@lru_cache(maxsize=512)
+@functools.lru_cache(maxsize=512)
 def adapter(type_: Any) -> TypeAdapter[Any] | None:
     """Return pydantic's validator for the type, or None if no value of it can be written in YAML."""
     from pydantic import TypeAdapter
@@ -91,7 +92,7 @@ def _strict(type_: Any) -> Any:
     if type_ in (Any, object, NoneType):
         return type_
     if is_union(type_):
-        return typing.Union[tuple(_strict(part) for part in typing.get_args(type_))]  # noqa: UP007  # run time
+        return functools.reduce(operator.or_, (_strict(part) for part in typing.get_args(type_)))
     if typing.get_origin(type_) in (list, tuple):
         return typing.get_origin(type_)[tuple(p if p is ... else _strict(p) for p in typing.get_args(type_))]
     if dataclasses.is_dataclass(type_) and inspect.isclass(type_):
@@ -111,6 +112,6 @@ def _by_name(value: Any, type_: Any) -> Any:
     return {name: _by_name(part, types.get(name)) for name, part in value.items()}
 
 
-@lru_cache(maxsize=128)
+@functools.lru_cache(maxsize=128)
 def _hints(type_: Any) -> dict[str, Any]:
     return typing.get_type_hints(type_)

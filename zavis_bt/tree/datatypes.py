@@ -87,9 +87,9 @@ def _resolve(expression: ast.expr, text: str, names: Mapping[str, Any]) -> Any:
                 raise InputError(f"unknown type '{name}'{did_you_mean(name, names) or ' (such as float or Pose2D)'}")
             return names[name]
         case ast.Subscript(value=ast.Name(id="list"), slice=inner):
-            return list[_resolve(inner, text, names)]  # type: ignore[misc]  # a type computed at run time
+            return types.GenericAlias(list, (_resolve(inner, text, names),))
         case ast.BinOp(left=left, op=ast.BitOr(), right=right):
-            return typing.Union[_resolve(left, text, names), _resolve(right, text, names)]  # noqa: UP007  # run time
+            return _resolve(left, text, names) | _resolve(right, text, names)
     raise InputError(f"'{text}' is no type (such as float, list[str] or Pose2D | Viewpoint)")
 
 

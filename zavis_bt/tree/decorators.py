@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import py_trees
 from py_trees.common import Status
@@ -28,9 +29,9 @@ class Timeout(Decorator):
         self._clock: Clock | None = None
         self._end = 0.0
 
-    def setup(self, *, clock: Clock) -> None:  # type: ignore[override]  # py_trees hands resources over unnamed
-        """Take the mission's clock."""
-        self._clock = clock
+    def setup(self, **resources: Any) -> None:
+        """Take the mission's ``clock``."""
+        self._clock = resources["clock"]
 
     def initialise(self) -> None:
         """Start the time."""

@@ -18,6 +18,9 @@ WIDTH = 200
 PASSES = 4
 """How often a text may have to go through ruamel until it stays as it is (comments move to their columns)."""
 
+_UNWRITABLE = (ValueError, TypeError, AttributeError, AssertionError, NotImplementedError)
+"""What ruamel raises for what it reads but cannot write."""
+
 _RANK = {
     key: rank for rank, key in enumerate(("do", "name", "save", "timeout", "retry", "recover", "repeat", "when"), 1)
 }
@@ -58,8 +61,7 @@ def _round_trip(text: str, name: str) -> str:
         for node in _nodes_of(document):
             _reorder(node)
         yaml.dump(document, out)
-    except (YAMLError, ValueError, TypeError, AttributeError, AssertionError, NotImplementedError) as error:
-        # The last five are how ruamel fails on what it reads but cannot write.
+    except (YAMLError, *_UNWRITABLE) as error:
         raise InputError(f"{name}: cannot be formatted: {' '.join(str(error).split())}") from error
     return out.getvalue()
 

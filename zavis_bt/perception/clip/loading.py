@@ -86,10 +86,8 @@ def build_untrained(model: str, weights: Path | None = None) -> Parts:
     if weights is not None:
         if not weights.is_file():
             raise InputError(f"{weights}: there is no such file (weights of {model})")
-        try:
+        with _loading(weights):
             load_checkpoint(parts.network, str(weights))
-        except Exception as error:  # whatever open_clip, torch and safetensors raise for bad files
-            raise InputError(f"{weights}: cannot be loaded: {_first_line(error)}") from error
     return parts
 
 
@@ -104,10 +102,8 @@ def _with_word_tower(model: str, pretrained: str | None) -> Parts:
     if folder is None or not (folder / WORDS).is_file():
         raise InputError(f"{model}{LIT}: has no word tower (train one: zavis matcher lit FOLDER)")
     parts = load_parts(model, pretrained)
-    try:
+    with _loading(folder / WORDS):
         tower = WordTower.load(parts.network, folder / WORDS)
-    except Exception as error:  # whatever safetensors and torch raise for bad files
-        raise InputError(f"{folder / WORDS}: cannot be loaded: {_first_line(error)}") from error
     return Parts(tower.eval(), tower.tokenise, parts.preprocessing)
 
 
@@ -143,15 +139,21 @@ def _check_folder(folder: Path, pretrained: str | None) -> None:
 
 
 def _build(model: str, pretrained: str | None, *, where: str, required: bool) -> Parts:
-    try:
-        with _quiet():
-            network, _, _ = open_clip.create_model_and_transforms(
-                model, pretrained=pretrained, require_pretrained=required, load_weights=required
-            )
-            tokenizer = open_clip.get_tokenizer(model)
-    except Exception as error:  # whatever open_clip, torch, safetensors and the hub raise for bad files and networks
-        raise InputError(f"{where}: cannot be loaded: {_first_line(error)}") from error
+    with _loading(where), _quiet():
+        network, _, _ = open_clip.create_model_and_transforms(
+            model, pretrained=pretrained, require_pretrained=required, load_weights=required
+        )
+        tokenizer = open_clip.get_tokenizer(model)
     return Parts(network.eval(), _knowing(tokenizer, network), _preprocessing(network))
+
+
+@contextmanager
+def _loading(where: Path | str) -> Iterator[None]:
+    """Tell in one line what cannot be loaded."""
+    try:
+        yield
+    except Exception as error:  # open_clip, torch, safetensors and the hub share no type for bad files and networks
+        raise InputError(f"{where}: cannot be loaded: {_first_line(error)}") from error
 
 
 def _knowing(tokenizer: Tokenizer, network: nn.Module) -> Tokenizer:
