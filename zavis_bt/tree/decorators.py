@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import py_trees
 from py_trees.common import Status
@@ -29,9 +28,9 @@ class Timeout(Decorator):
         self._clock: Clock | None = None
         self._end = 0.0
 
-    def setup(self, **resources: Any) -> None:
-        """Take the mission's ``clock``."""
-        self._clock = resources["clock"]
+    def setup(self, *, clock: Clock) -> None:  # type: ignore[override]  # trees read the resources' names from here
+        """Take the mission's clock."""
+        self._clock = clock
 
     def initialise(self) -> None:
         """Start the time."""
