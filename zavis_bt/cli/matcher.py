@@ -108,7 +108,7 @@ def average(
     models: Annotated[list[str], typer.Argument(metavar="MODEL...", help="Folders of trainings, or a shipped model.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the mean.")],
 ) -> None:
-    """Write the mean of models that trained on from the same weights; it is right more often than each of them."""
+    """Write the mean of models that trained on from the same weights; it is mostly better than each of them."""
     from zavis_bt.perception.clip.averaging import averaged_facts, averaged_weights
     from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
     from zavis_bt.perception.clip.writing import write_model

@@ -1,8 +1,8 @@
 """The mean of models that trained on from the same weights.
 
-It is right more often than any of them (Wortsman et al., "Model soups", ICML 2022), and keeps what an earlier one knew
-(Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022). The mean of models that grew up apart knows
-nothing.
+It is mostly right more often than any of them (Wortsman et al., "Model soups", ICML 2022), and keeps what an earlier
+one knew (Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022). The mean of models that grew up apart
+knows nothing.
 """
 
 from __future__ import annotations
