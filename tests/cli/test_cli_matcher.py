@@ -41,6 +41,10 @@ def test_train_and_judge(tmp_path: Path) -> None:
     assert wider.exit_code == 0, wider.exception
     facts = json.loads((tmp_path / "wider" / CONFIG).read_text())
     assert facts["model_cfg"]["vision_cfg"]["width"] == facts["training"]["widened_to"] == 40
+    deeper = matcher("deepen", out, "--layers", "2,3,3,2", "--out", str(tmp_path / "deeper"))
+    assert deeper.exit_code == 0, deeper.exception
+    facts = json.loads((tmp_path / "deeper" / CONFIG).read_text())
+    assert facts["model_cfg"]["vision_cfg"]["layers"] == facts["training"]["deepened_to"] == [2, 3, 3, 2]
     mean = matcher("average", "zavis-tiny", out, "--out", str(tmp_path / "mean"))
     assert mean.exit_code == 0, mean.exception
     assert matcher("eval", str(tmp_path / "mean"), data).exit_code == 0
@@ -56,6 +60,8 @@ def test_train_and_judge(tmp_path: Path) -> None:
         (("train", "sim:4", "--out", "x", "--device", "tpu"), "'tpu' is unknown"),
         (("train", "sim:4", "--out", "x", "--resume"), "holds no training"),
         (("widen", "zavis-tiny", "--width", "8", "--out", "x"), "an even number above"),
+        (("deepen", "zavis-tiny", "--layers", "1,1", "--out", "x"), "none below these"),
+        (("deepen", "zavis-tiny", "--layers", "more", "--out", "x"), "--layers: 'more' are no whole numbers"),
         (("average", "zavis-tiny", "--out", "x"), "name two or more"),
         (("eval", "nonsense", "sim:4"), "is unknown"),
         (("eval", "ViT-B-32@nowhere.pt", "sim:4"), "neither a file nor a published tag"),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zavis_bt.cli.lists import listed
 from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
@@ -176,11 +177,7 @@ def _config(known: str | None, method: str, backbone: str, width: int | None, *,
     from zavis_bt.perception.detector.building import DEFAULT_KNOWN
     from zavis_bt.perception.detector.config import backbone_named, method_named
 
-    names = (
-        DEFAULT_KNOWN
-        if known is None
-        else tuple(project_name(name.strip()) for name in known.split(",") if name.strip())
-    )
+    names = DEFAULT_KNOWN if known is None else tuple(map(project_name, listed(known)))
     working = 320 if backbone == "tiny" else (width or 800)
     return DetectorConfig(names, method_named(method), backbone_named(backbone), width=working, frozen=pretrained)
 

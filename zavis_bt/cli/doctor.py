@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from zavis_bt.cli.lists import listed
 from zavis_bt.errors import InputError, ZavisError, did_you_mean
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def _chosen(file: RobotFile, only: str | None) -> tuple[str, ...]:
         )
     if only is None:
         return KINDS
-    wanted = [name.strip().replace("-", "_") for name in only.split(",") if name.strip()]
+    wanted = [name.replace("-", "_") for name in listed(only)]
     for name in wanted:
         if name not in KINDS:
             raise InputError(f"--only: there is no device '{name}'{did_you_mean(name, KINDS)}")

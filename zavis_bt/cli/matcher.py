@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from zavis_bt.cli.lists import whole_numbers
 from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
@@ -100,6 +101,29 @@ def widen(
     weights = widen_weights(parts.network.state_dict(), config, width, noise=noise, seed=seed)
     facts = read_facts(model)
     write_model(out, widened_config(config, width), parts.preprocessing, weights, facts | {"widened_to": width})
+    typer.echo(f"written: {out}")
+
+
+@app.command()
+def deepen(
+    model: Annotated[str, typer.Argument(metavar="MODEL", help="A model's folder, or one that comes along.")],
+    layers: Annotated[str, typer.Option(help="Blocks of each stage of the new image tower, such as 2,3,3,1.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the deeper model.")],
+    seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
+) -> None:
+    """Make a trained image tower deeper, so that it can learn more from there (train --model OUT --pretrained …)."""
+    from zavis_bt.perception.clip.deepening import deepen as deepen_weights
+    from zavis_bt.perception.clip.deepening import deepened_config
+    from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
+    from zavis_bt.perception.clip.writing import write_model
+
+    if (out / CONFIG).exists():
+        raise InputError(f"--out: {out} holds a model (name a new folder)")
+    blocks = [*whole_numbers(layers, "--layers", "2,3,3,1")]
+    parts, config = load_parts(model, None), model_config(model)
+    weights = deepen_weights(parts.network.state_dict(), config, blocks, seed=seed)
+    facts = read_facts(model) | {"deepened_to": blocks}
+    write_model(out, deepened_config(config, blocks), parts.preprocessing, weights, facts)
     typer.echo(f"written: {out}")
 
 

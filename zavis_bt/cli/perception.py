@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from zavis_bt.cli.lists import listed, whole_numbers
 from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
@@ -80,10 +81,10 @@ def calibrate(
     if not out.parent.is_dir():
         raise InputError(f"--out: there is no folder {out.parent} (make it first)")
     labelled = open_dataset(data)
-    sizes = _widths(widths)
+    sizes = () if widths is None else whole_numbers(widths, "--widths", "160,320,640")
     settings = EyesSettings(detector, clip, device, sizes, thresholds=Thresholds())
     eyes = open_eyes("neural", settings)
-    names = (*DEFAULT_KNOWN_LANDMARKS, *DEFAULT_UNKNOWN_LANDMARKS) if landmarks is None else _names(landmarks)
+    names = (*DEFAULT_KNOWN_LANDMARKS, *DEFAULT_UNKNOWN_LANDMARKS) if landmarks is None else listed(landmarks)
     console = Console(highlight=False)
     with _bar(console) as progress:
         found = calibrated(
@@ -178,17 +179,6 @@ def _quantiles(scores: FloatArray) -> dict[str, float]:
     finite = scores[np.isfinite(scores)]
     values = np.quantile(finite, _QUANTILES) if len(finite) else np.zeros(len(_QUANTILES))
     return {f"{quantile:g}": round(float(value), 2) for quantile, value in zip(_QUANTILES, values, strict=True)}
-
-
-def _widths(text: str | None) -> tuple[int, ...]:
-    try:
-        return () if text is None else tuple(int(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"--widths: '{text}' are no whole numbers (e.g. 160,320,640)") from None
-
-
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def _print_entry(name: str, value: Any, console: Console, indent: str = "") -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from zavis_bt.cli.lists import listed
 from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
@@ -78,8 +79,8 @@ def run(
         prior=prior,
         perception=perception or _who_sees(file),
         confirm=confirm or _who_answers(file),
-        known=_names(known, DEFAULT_KNOWN_LANDMARKS),
-        unknown=_names(unknown, DEFAULT_UNKNOWN_LANDMARKS),
+        known=DEFAULT_KNOWN_LANDMARKS if known is None else listed(known),
+        unknown=DEFAULT_UNKNOWN_LANDMARKS if unknown is None else listed(unknown),
         inputs=tree_inputs(path, assignments),
         real_time=real_time or bool(file.devices),
         settings=MissionSettings(planner=planner, max_travel=max_travel, max_seconds=max_seconds, safety=file.safety),
@@ -243,7 +244,3 @@ def _wanted(target: str | None) -> str:
     if not sys.stdin.isatty():
         raise InputError('--target: is missing (say what to find, e.g. --target "red wallet")')
     return str(typer.prompt("What shall I find?"))
-
-
-def _names(text: str | None, default: tuple[str, ...]) -> tuple[str, ...]:
-    return default if text is None else tuple(name.strip() for name in text.split(",") if name.strip())
