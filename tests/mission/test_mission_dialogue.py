@@ -26,10 +26,10 @@ class ScriptedHuman:
         return DoneJob(Answer(self.answers.pop(0)))
 
 
-def candidate(x: float, score: float = 30.0) -> Candidate:
+def candidate(x: float, score: float = 30.0, side: float = 4.0) -> Candidate:
     pixels = np.full((8, 8, 3), 200, np.uint8), np.ones((8, 8), np.float32)
     frame = RgbdFrame(CameraIntrinsics.from_fov(8, 8, 1.0), np.eye(4), 0.0, lambda: pixels)
-    return Candidate("cup", score, Box(1, 1, 5, 5), (x, 0.0, 0.8), frame)
+    return Candidate("cup", score, Box(1, 1, 1 + side, 1 + side), (x, 0.0, 0.8), frame)
 
 
 def dialogue(human) -> Dialogue:
@@ -44,6 +44,27 @@ def test_a_thing_turned_down_twice_is_not_shown_again():
     assert len(human.shown) == 2
     assert answer.accepted is None
     assert "before" in answer.reason
+
+
+def test_a_much_closer_view_is_shown_again_and_the_poor_ones_never():
+    human = ScriptedHuman(None, None, None, None)
+    talk = dialogue(human)
+    sides = (2.0, 2.0, 2.9, 3.1, 3.1, 3.1, 2.0)
+    shown = []
+    for side in sides:
+        talk.ask("cup", [candidate(1.0, side=side)]).result()
+        shown.append(len(human.shown))
+    assert shown == [1, 2, 2, 3, 4, 4, 4]  # 1.5 times as large, not 1.45 times
+
+
+def test_larger_is_meant_as_an_angle():
+    pixels = np.full((4, 4, 3), 200, np.uint8), np.ones((4, 4), np.float32)
+    coarse = RgbdFrame(CameraIntrinsics.from_fov(4, 4, 1.0), np.eye(4), 0.0, lambda: pixels)
+    human = ScriptedHuman(None, None)
+    talk = dialogue(human)
+    for seen in (Candidate("cup", 30.0, Box(0, 0, 2, 2), (0.0, 0.0, 0.8), coarse), candidate(0.0), candidate(0.0)):
+        talk.ask("cup", [seen]).result()
+    assert len(human.shown) == 2  # half the pixels of a camera of half the width is as large
 
 
 def test_an_accepted_index_refers_to_the_list_that_was_given():

@@ -35,10 +35,20 @@ class _Remembered:
 
 
 class Dialogue:
-    """A person who is not bothered twice: candidates near ones already turned down are held back."""
+    """A person who is not bothered twice: candidates near ones already turned down are held back.
+
+    What was turned down from afar, or when its box held only a part of it, is shown again once it is seen much larger.
+    """
 
     def __init__(
-        self, human: Human, journal: Journal, *, most: int = 5, same_place: float = 0.15, asks_per_place: int = 2
+        self,
+        human: Human,
+        journal: Journal,
+        *,
+        most: int = 5,
+        same_place: float = 0.15,
+        asks_per_place: int = 2,
+        closer: float = 1.5,
     ) -> None:
         """Wrap a person.
 
@@ -48,9 +58,10 @@ class Dialogue:
             most: How many candidates are shown at once.
             same_place: Candidates closer than this are taken for the same thing [m].
             asks_per_place: How often the same thing is shown: a poor view of the target may be turned down once.
+            closer: Views that are this many times larger count afresh, by the square root of the angular area.
         """
         self._human, self._journal, self._most = human, journal, most
-        self._same_place, self._asks_per_place = same_place, asks_per_place
+        self._same_place, self._asks_per_place, self._closer = same_place, asks_per_place, closer
         self._rejected: list[Candidate] = []
 
     def news(self, candidates: Sequence[Candidate]) -> list[int]:
@@ -72,4 +83,13 @@ class Dialogue:
         return _Remembered(self._human.ask(target, asked), asked, indices, self._rejected)
 
     def _times(self, candidate: Candidate, shown: Iterable[Candidate]) -> int:
-        return sum(math.dist(candidate.position, old.position) < self._same_place for old in shown)
+        """Return how often the thing was shown, views apart that are much smaller than this one."""
+        least = _extent(candidate) / self._closer
+        return sum(
+            math.dist(candidate.position, old.position) < self._same_place and _extent(old) > least for old in shown
+        )
+
+
+def _extent(candidate: Candidate) -> float:
+    """Return how large the candidate is in its frame, over the focal length: about its angle [rad]."""
+    return math.sqrt(candidate.box.area) / candidate.frame.intrinsics.fx
