@@ -90,13 +90,12 @@ def widen(
     seed: Annotated[int, typer.Option(min=0, help="Of all randomness.")] = 0,
 ) -> None:
     """Make a trained image tower wider, so that it can learn more from there (train --model OUT --pretrained …)."""
-    from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
+    from zavis_bt.perception.clip.loading import load_parts, model_config, read_facts
     from zavis_bt.perception.clip.widening import widen as widen_weights
     from zavis_bt.perception.clip.widening import widened_config
     from zavis_bt.perception.clip.writing import write_model
 
-    if (out / CONFIG).exists():
-        raise InputError(f"--out: {out} holds a model (name a new folder)")
+    _check_new(out)
     parts, config = load_parts(model, None), model_config(model)
     weights = widen_weights(parts.network.state_dict(), config, width, noise=noise, seed=seed)
     facts = read_facts(model)
@@ -114,11 +113,10 @@ def deepen(
     """Make a trained image tower deeper, so that it can learn more from there (train --model OUT --pretrained …)."""
     from zavis_bt.perception.clip.deepening import deepen as deepen_weights
     from zavis_bt.perception.clip.deepening import deepened_config
-    from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
+    from zavis_bt.perception.clip.loading import load_parts, model_config, read_facts
     from zavis_bt.perception.clip.writing import write_model
 
-    if (out / CONFIG).exists():
-        raise InputError(f"--out: {out} holds a model (name a new folder)")
+    _check_new(out)
     blocks = [*whole_numbers(layers, "--layers", "2,3,3,1")]
     parts, config = load_parts(model, None), model_config(model)
     weights = deepen_weights(parts.network.state_dict(), config, blocks, seed=seed)
@@ -134,11 +132,10 @@ def average(
 ) -> None:
     """Write the mean of models that trained on from the same weights; it is mostly better than each of them."""
     from zavis_bt.perception.clip.averaging import averaged_facts, averaged_weights
-    from zavis_bt.perception.clip.loading import CONFIG, load_parts, model_config, read_facts
+    from zavis_bt.perception.clip.loading import load_parts, model_config, read_facts
     from zavis_bt.perception.clip.writing import write_model
 
-    if (out / CONFIG).exists():
-        raise InputError(f"--out: {out} holds a model (name a new folder)")
+    _check_new(out)
     parts = [load_parts(model, None) for model in models]
     weights = averaged_weights([one.network.state_dict() for one in parts])
     facts = averaged_facts([read_facts(model) for model in models])
@@ -213,6 +210,13 @@ def evaluate(
         typer.echo(f"{value:8.3f}  {name}")
     for true, given, share in report.confusions:
         typer.echo(f"{share:8.3f}  of {true} taken for {given}")
+
+
+def _check_new(out: Path) -> None:
+    from zavis_bt.perception.clip.loading import CONFIG
+
+    if (out / CONFIG).exists():
+        raise InputError(f"--out: {out} holds a model (name a new folder)")
 
 
 def _facts(dataset: DetectionDataset, settings: MatcherSettings, done: int, patches: Patches) -> dict[str, Any]:
