@@ -188,7 +188,8 @@ class In(Generic[T]):
             return self
         constants = instance.constants
         if self.name in constants:
-            return constants[self.name]  # type: ignore[no-any-return]  # checked when it was bound
+            bound: T = constants[self.name]  # checked when it was bound
+            return bound
         return self._read_wire(instance)
 
     def _read_wire(self, instance: HasPorts) -> T:
@@ -200,17 +201,21 @@ class In(Generic[T]):
             if self.port.required:
                 variable = key.rpartition("/")[2]
                 raise InputError(f"input '{self.name}' reads ${variable}, which nothing has written yet")
-            return copy.deepcopy(self.port.default_value)  # type: ignore[no-any-return]  # checked when declared
+            default: T = copy.deepcopy(self.port.default_value)  # checked when declared
+            return default
         if self._ranged:
             return self._checked(value)
         # Whoever writes checks the type and the loader that types fit, except that an int may stand for a float.
-        return float(value) if type(value) is int and self.port.data_type is float else value  # type: ignore[return-value]  # checked as said
+        widened: Any = float(value) if type(value) is int and self.port.data_type is float else value
+        read: T = widened
+        return read
 
     def _checked(self, value: Any) -> T:
         try:
-            return self.port.check(value)  # type: ignore[no-any-return]  # check() returns the declared type
+            checked: T = self.port.check(value)
         except (TypeError, ValueError) as error:
             raise InputError(f"input '{self.name}' {error}") from error
+        return checked
 
     def __set__(self, instance: HasPorts, value: Never) -> None:
         raise AttributeError(f"input '{self.name}' cannot be assigned (outputs can)")
@@ -250,7 +255,8 @@ class Out(Generic[T]):
             return self
         if self.name not in instance.written:
             raise InputError(f"output '{self.name}' has not been written yet")
-        return instance.written[self.name]  # type: ignore[no-any-return]  # checked when it was written
+        written: T = instance.written[self.name]  # checked when it was written
+        return written
 
     def __set__(self, instance: HasPorts, value: T) -> None:
         try:
