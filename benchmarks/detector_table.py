@@ -4,7 +4,7 @@
 
 One JSON file a row and seed; what is there is not done again, an interrupted training goes on. A row that is trained
 but has no JSON file is only judged. Several processes may work in one folder, each on methods or seeds of its own. With
-nothing left to do it only prints the table.
+nothing left to do it only prints the table. ``--further DIR`` teaches the detectors of the table in DIR further.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from zavis_bt.perception.detector import (
     TrainingLog,
     TrainingSettings,
     Views,
+    load_detector,
     save_detector,
 )
 from zavis_bt.perception.detector.building import DEFAULT_KNOWN, build_network
@@ -55,6 +56,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--methods", default=",".join(NAMES))
     parser.add_argument("--seeds", default="0,1,2")
+    parser.add_argument("--further", type=Path, help="folder of the table whose detectors are taught further")
     parser.add_argument("--iterations", type=int, default=600, help="of each row and seed")
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--warm-up", type=int, default=3000, help="iterations with cut-outs, once for all rows")
@@ -85,13 +87,18 @@ def trained(method: str, seed: int, data: DetectionDataset, folder: Path, given:
     file = folder / "detector.safetensors"
     if file.exists():
         return file
-    config = DetectorConfig(DEFAULT_KNOWN, method_named(method))
-    network = build_network(config, seed)
-    begin(network, data, given)
+    if given.further is None:
+        network = build_network(DetectorConfig(DEFAULT_KNOWN, method_named(method)), seed)
+        begin(network, data, given)
+        labels, earlier = labelling(method, start=0.1), {}
+    else:
+        network, earlier = load_detector(given.further / f"{method}-{seed}" / "detector.safetensors")
+        labels = labelling(method, start=0.0)
     settings = TrainingSettings(given.iterations, given.batch, 1e-3, seed, collages=0.35, views=Views(large=0.35))
-    finish(Training(network, data, settings, labelling(method)), folder)
+    finish(Training(network, data, settings, labels), folder)
     facts = {"data": data.name, "images": len(data), "rendered": data.rendered, "seed": seed, "batch": given.batch}
-    facts |= {"iterations": given.iterations, "collages": given.collages, "warm_up": given.warm_up}
+    facts |= {"iterations": given.iterations}
+    facts |= {"start": earlier} if earlier else {"collages": given.collages, "warm_up": given.warm_up}
     save_detector(network, file, facts)
     return file
 
@@ -128,9 +135,9 @@ def finish(training: Training, folder: Path) -> None:
         training.run(log, lambda state: state.save(folder))
 
 
-def labelling(method: str) -> Labelling | None:
+def labelling(method: str, *, start: float) -> Labelling | None:
     if method == "zavis":
-        return ClipLabelling(ClipObjectness(ClipModel.load(str(find_weights("zavis-tiny")))))
+        return ClipLabelling(ClipObjectness(ClipModel.load(str(find_weights("zavis-tiny")))), start=start)
     return ProposalLabelling() if method == "ore" else None
 
 

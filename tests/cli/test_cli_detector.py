@@ -6,10 +6,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-pytest.importorskip("torch")
+torch = pytest.importorskip("torch")
 
 from zavis_bt.cli.detector import app  # needs torch
 from zavis_bt.errors import InputError
+from zavis_bt.perception.detector import load_detector
+from zavis_bt.perception.models import find_weights
 
 
 def detector(*arguments: str) -> Result:
@@ -37,6 +39,29 @@ def test_train_export_and_judge_on_drawn_rooms(tmp_path: Path) -> None:
     assert content["images"] == 2
     assert content["facts"]["rendered"] is True
     assert content["facts"]["method"] == "faster_rcnn"
+
+
+def test_a_trained_detector_is_taught_further(tmp_path: Path) -> None:
+    taught = tmp_path / "run" / "detector.safetensors"
+    short = ("--iterations", "1", "--batch", "2", "--width", "64", "--learning-rate", "1e-8", "--no-collages")
+    result = detector("train", "sim:4:3", "--out", str(taught.parent), "--start", "zavis-tiny-detector", *short)
+    assert result.exit_code == 0, result.exception
+    (before, _), (after, facts) = load_detector(find_weights("zavis-tiny-detector")), load_detector(taught)
+    assert after.config == before.config
+    old, new = before.state_dict(), after.state_dict()
+    kernels = [name for name in old if name.endswith("weight")]
+    assert all(torch.allclose(old[name], new[name], atol=1e-6) for name in kernels)  # it begins where the other ended
+    assert any(not torch.equal(old[name], new[name]) for name in kernels)
+    assert facts["iterations"] == 1
+    assert facts["start"]["weights"] == "zavis-tiny-detector"
+    assert facts["start"]["rendered"] is True
+
+
+@pytest.mark.parametrize("option", [("--method", "ore"), ("--known", "sofa"), ("--warm-up", "3")])
+def test_a_trained_detector_brings_its_classes_and_method_along(tmp_path: Path, option: tuple[str, str]) -> None:
+    error = detector("train", "sim:4:3", "--out", str(tmp_path), "--start", "zavis-tiny-detector", *option).exception
+    assert isinstance(error, InputError)
+    assert str(error).startswith(f"{option[0]}: zavis-tiny-detector of --start brings this along")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from zavis_bt.errors import InputError
 
 if TYPE_CHECKING:
     from zavis_bt.perception.datasets import DetectionDataset
-    from zavis_bt.perception.detector import DetectorConfig
+    from zavis_bt.perception.detector import DetectorNetwork
     from zavis_bt.perception.detector.pseudo_labels import Labelling
 
 _CLIP = "zavis-tiny"
@@ -35,9 +35,15 @@ def train(
     known: Annotated[
         str | None, typer.Option(help="Comma-separated known classes; the usual known landmarks if not given.")
     ] = None,
-    method: Annotated[str, typer.Option(help="zavis (the paper's), ore, or faster_rcnn.")] = "zavis",
-    backbone: Annotated[str, typer.Option(help="tiny, resnet50_fpn or resnet50_c4.")] = "tiny",
+    method: Annotated[str | None, typer.Option(help="zavis (the paper's; if not given), ore, or faster_rcnn.")] = None,
+    backbone: Annotated[str | None, typer.Option(help="tiny (if not given), resnet50_fpn or resnet50_c4.")] = None,
     weights: Annotated[Path | None, typer.Option(help="torchvision's checkpoint of ResNet-50 to begin with.")] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DETECTOR", help="A trained one to teach further; brings classes, method and backbone along."
+        ),
+    ] = None,
     clip: Annotated[str, typer.Option(help="Image-text model that tells things from background.")] = _CLIP,
     iterations: Annotated[int, typer.Option(min=1, help="Steps of the optimiser.")] = 4000,
     batch: Annotated[int, typer.Option(min=1, help="Images a step.")] = 16,
@@ -66,40 +72,50 @@ def train(
     from zavis_bt.cli.detector_data import open_images
     from zavis_bt.cli.detector_progress import progress_bar
     from zavis_bt.perception.detector import Checkpoint, Training, TrainingLog, TrainingSettings, Views, save_detector
-    from zavis_bt.perception.detector.building import FACTS, build_network
+    from zavis_bt.perception.detector.building import FACTS
     from zavis_bt.perception.detector.decoded import Decoded, are_of_one_size
     from zavis_bt.perception.detector.training import check_data
     from zavis_bt.perception.detector.warm_up import WarmUp
 
-    config = _config(known, method, backbone, width, pretrained=weights is not None)
+    if start is None:
+        network = _new_network(known, method or "zavis", backbone or "tiny", width, weights, seed)
+        earlier: dict[str, object] = {}
+    else:
+        architecture = {"--known": known, "--method": method, "--backbone": backbone, "--weights": weights}
+        network, earlier = _trained_network(start, architecture | {"--warm-up": warm_up or None})
+    config = network.config
+    is_tiny = config.backbone == "tiny"
     images: DetectionDataset = open_images(data)
     if not resume and (out / "checkpoint.pt").exists():
         raise InputError(f"--out: {out} holds a training (go on with --resume, or name a new folder)")
     before = Checkpoint.load(out) if resume else None
-    network = build_network(config, seed, weights)
-    peak = rate or (2e-3 if backbone == "tiny" else 1e-4)
-    crowded = backbone == "tiny" if collages is None else collages
+    peak = rate or (2e-3 if is_tiny else 1e-4)
+    crowded = is_tiny if collages is None else collages
     settings = TrainingSettings(
         iterations,
         batch,
         peak,
         seed,
         workers,
-        views=Views() if backbone == "tiny" else Views(width or 800, zoom=1.5, large=0.0),
-        collages_first=_COLLAGES_FIRST if crowded else 0.0,
+        views=Views() if is_tiny else Views(width or config.width, zoom=1.5, large=0.0),
+        collages_first=_COLLAGES_FIRST if crowded and start is None else 0.0,
         collages=_COLLAGES if crowded else 0.0,
         warm_up=WarmUp(warm_up, _BOXES * warm_up) if warm_up else None,
     )
     out.mkdir(parents=True, exist_ok=True)
     check_data(images, config.known)
-    if backbone == "tiny" and are_of_one_size(images):
+    if is_tiny and are_of_one_size(images):
         with progress_bar(len(images), "decoding") as progress:
             images = Decoded(images, out / "images.npy", _DECODED, progress)
-    training = Training(network, images, settings, _labelling(method, clip, device), device)
+    training = Training(
+        network, images, settings, _labelling(config.method, clip, device, trained=start is not None), device
+    )
     if before is not None:
         training.resume(before)
-    facts = {"data": images.name, "rendered": images.rendered, "images": len(images), "seed": seed}
+    rendered = images.rendered or bool(earlier.get("rendered"))
+    facts = {"data": images.name, "rendered": rendered, "images": len(images), "seed": seed}
     facts |= {"iterations": iterations, "batch": batch, "learning_rate": peak, "clip": clip}
+    facts |= {"start": earlier} if earlier else {}
     (out / FACTS).write_text(json.dumps(facts))
     first = 0 if resume else (1 + _BOXES) * warm_up
     with TrainingLog(out) as log, progress_bar(first + iterations) as progress:
@@ -171,19 +187,38 @@ def check_device(device: str) -> None:
         raise InputError(f"--device: '{device}' is not there (choose cpu)")
 
 
-def _config(known: str | None, method: str, backbone: str, width: int | None, *, pretrained: bool) -> DetectorConfig:
+def _new_network(
+    known: str | None, method: str, backbone: str, width: int | None, weights: Path | None, seed: int
+) -> DetectorNetwork:
     from zavis_bt.perception.datasets import project_name
     from zavis_bt.perception.detector import DetectorConfig
-    from zavis_bt.perception.detector.building import DEFAULT_KNOWN
+    from zavis_bt.perception.detector.building import DEFAULT_KNOWN, build_network
     from zavis_bt.perception.detector.config import backbone_named, method_named
 
     names = DEFAULT_KNOWN if known is None else tuple(map(project_name, listed(known)))
     working = 320 if backbone == "tiny" else (width or 800)
-    return DetectorConfig(names, method_named(method), backbone_named(backbone), width=working, frozen=pretrained)
+    frozen = weights is not None
+    config = DetectorConfig(names, method_named(method), backbone_named(backbone), width=working, frozen=frozen)
+    return build_network(config, seed, weights)
 
 
-def _labelling(method: str, clip: str, device: str) -> Labelling | None:
-    """Return where labels of unknown things come from."""
+def _trained_network(start: str, settled: dict[str, object]) -> tuple[DetectorNetwork, dict[str, object]]:
+    """Return a detector to teach further, and what it was trained on.
+
+    ``settled`` are the options that it leaves no choice for.
+    """
+    from zavis_bt.perception.detector import load_detector
+    from zavis_bt.perception.models import find_weights
+
+    for option, value in settled.items():
+        if value is not None:
+            raise InputError(f"{option}: {start} of --start brings this along (leave one of the two out)")
+    network, facts = load_detector(find_weights(start))
+    return network, {"weights": start, **facts}
+
+
+def _labelling(method: str, clip: str, device: str, *, trained: bool) -> Labelling | None:
+    """Return where labels of unknown things come from; a trained network has proposals for them at once."""
     from zavis_bt.perception.detector import ClipLabelling, ProposalLabelling
 
     if method == "zavis":
@@ -191,5 +226,6 @@ def _labelling(method: str, clip: str, device: str) -> Labelling | None:
         from zavis_bt.perception.neural import find_clip
 
         architecture, pretrained, _ = find_clip(clip)
-        return ClipLabelling(ClipObjectness(ClipModel.load(architecture, pretrained, device=device)))
+        objectness = ClipObjectness(ClipModel.load(architecture, pretrained, device=device))
+        return ClipLabelling(objectness, start=0.0) if trained else ClipLabelling(objectness)
     return ProposalLabelling() if method == "ore" else None
