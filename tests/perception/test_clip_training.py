@@ -19,9 +19,10 @@ from zavis_bt.perception.clip import ClipModel
 from zavis_bt.perception.clip.augment import Augmentation, boxes_near, coarsen, cut_squares, repaint
 from zavis_bt.perception.clip.backgrounds import draw_backgrounds
 from zavis_bt.perception.clip.batches import CropBatches
-from zavis_bt.perception.clip.captions import EMPTY, NO_COLOUR, CaptionWriter
-from zavis_bt.perception.clip.colours import held_out_pairs, many_coloured
+from zavis_bt.perception.clip.captions import EMPTY, NO_COLOUR, Captions, CaptionWriter
+from zavis_bt.perception.clip.colours import held_out_pairs, many_coloured, untold_pairs
 from zavis_bt.perception.clip.half_size import can_halve, reading_half_size
+from zavis_bt.perception.clip.heads import Labels, label_loss, untold_colour_loss
 from zavis_bt.perception.clip.loading import build_untrained
 from zavis_bt.perception.clip.loss import contrastive_loss
 from zavis_bt.perception.clip.patches import Patches, collect_patches, cut_patch
@@ -31,6 +32,7 @@ from zavis_bt.perception.clip.vocabulary import Vocabulary
 from zavis_bt.perception.datasets import open_dataset
 
 WORDS = Vocabulary(kinds={"furniture": ("sofa",), "transport": ()}, synonyms={"sofa": ("couch",)})
+COLOURS = ("red", "blue", "green", "white", "black", "pink", "grey")
 
 
 class Figures:
@@ -115,28 +117,30 @@ def test_repainted_crops_change_their_hue_alone() -> None:
     assert len(seen) > 1
 
 
+def painted(patches: Patches) -> Patches:
+    """Return patches of which every category has every colour."""
+    kinds = patches.categories
+    turns = np.array([np.count_nonzero(kinds[:row] == kind) for row, kind in enumerate(kinds)])
+    colours = np.where(patches.background, NO_COLOUR, turns % len(COLOURS)).astype(np.int32)
+    return replace(patches, colours=colours, colour_names=COLOURS)
+
+
 def test_the_colour_of_repainted_crops_is_not_known(patches: Patches) -> None:
-    names = ("red", "blue", "green", "white", "black", "pink", "grey")
-    patches = replace(
-        patches,
-        colours=np.where(patches.background, NO_COLOUR, np.arange(len(patches.colours)) % len(names)).astype(np.int32),
-        colour_names=names,
-    )
+    patches = painted(patches)
     settings = MatcherSettings(batch=200, augmentation=Augmentation(repainted=0.5))
     writer = CaptionWriter(patches.names, patches.colour_names, WORDS)
     batches = CropBatches(patches, writer, build_untrained("zavis-tiny").preprocessing, settings)
     batch = batches.draw(0, 32)
     own = torch.arange(len(batch.images))
     unsure = (batch.possible & ~batch.true).any(dim=1)
-    assert (batch.colours[unsure] == NO_COLOUR).all()
+    assert (batch.labels.colours[unsure] == NO_COLOUR).all()
     assert 0.2 < unsure.float().mean() < 0.8
     assert batch.true[own, own].all()
     assert (batch.possible | ~batch.true).all()
 
 
 def test_pairs_are_held_out_of_what_comes_in_many_colours_only() -> None:
-    colours = ["red", "blue", "green", "white", "black", "pink", "grey"]
-    pairs = {(colour, f"thing {k}") for colour in colours for k in range(60)} | {
+    pairs = {(colour, f"thing {k}") for colour in COLOURS for k in range(60)} | {
         ("orange", f"fruit {k}") for k in range(60)
     }
     held = held_out_pairs(pairs)
@@ -145,6 +149,89 @@ def test_pairs_are_held_out_of_what_comes_in_many_colours_only() -> None:
     assert 0.05 < len(held) / 420 < 0.17
     assert held_out_pairs(sorted(pairs) * 2) == held
     assert many_coloured(pairs | {("", "glass")}) == {f"thing {k}" for k in range(60)}
+
+
+def test_a_pair_never_seen_is_untold_where_a_category_has_many_colours() -> None:
+    pairs = {(colour, name) for colour in COLOURS for name in ("sofa", "mug")} | {("red", "tomato"), ("", "glass")}
+    assert untold_pairs(pairs) == frozenset()
+    assert untold_pairs(pairs - {("white", "sofa")}) == {("white", "sofa")}  # but not ("white", "tomato")
+
+
+def test_labels_are_not_told_from_untold_ones() -> None:
+    of_category, of_colour = torch.randn(2, 4), torch.randn(2, 3)
+    untold_categories, untold_colours = torch.zeros(2, 4, dtype=torch.bool), torch.zeros(2, 3, dtype=torch.bool)
+    untold_categories[0, 1] = untold_colours[1, 2] = True
+    labels = Labels(torch.tensor([0, 3]), torch.tensor([0, 1]), untold_categories, untold_colours)
+    first, second = (
+        F.cross_entropy(of_category[:1, [0, 2, 3]], torch.tensor([0])),
+        F.cross_entropy(of_category[1:], torch.tensor([3])),
+    )
+    colours = F.cross_entropy(of_colour[:1], torch.tensor([0])) + F.cross_entropy(of_colour[1:, :2], torch.tensor([1]))
+    torch.testing.assert_close(label_loss(of_category, of_colour, labels), (first + second) / 2 + colours / 4)
+
+
+def test_untold_colours_are_excluded_no_more_firmly_than_told_ones() -> None:
+    grey, white = 0, 1
+    untold = torch.tensor([[False, False], [False, False], [False, True], [False, True]])
+    labels = Labels(torch.zeros(4), torch.tensor([grey, grey, grey, grey]), torch.zeros(4, 1), untold)
+    logits = torch.tensor([[4.0, 1.0], [2.0, -3.0], [5.0, -1.0], [5.0, 4.0]], requires_grad=True)
+    loss = untold_colour_loss(logits, labels)
+    assert loss.item() == pytest.approx((2.0 + 0.0) / 2)  # gaps 3 and 5 where white is told; 6 and 1 where it is not
+    (slope,) = torch.autograd.grad(loss, logits)
+    assert slope[2, grey] > 0 > slope[2, white]
+    assert not slope[[0, 1, 3]].any()
+
+
+def test_nothing_is_said_of_untold_colours_without_a_comparison() -> None:
+    untold = torch.tensor([[False, True], [False, False]])
+    labels = Labels(torch.zeros(2), torch.tensor([0, NO_COLOUR]), torch.zeros(2, 1), untold)
+    assert untold_colour_loss(torch.tensor([[9.0, 0.0], [9.0, 0.0]]), labels) == 0
+    nothing = Labels(torch.zeros(1), torch.tensor([NO_COLOUR]), torch.zeros(1, 1), untold[:1])
+    assert untold_colour_loss(torch.tensor([[9.0, 0.0]]), nothing) == 0
+
+
+def test_captions_say_nothing_of_untold_pairs() -> None:
+    writer = CaptionWriter(["sofa", "mug"], COLOURS, WORDS)
+    white, grey = COLOURS.index("white"), COLOURS.index("grey")
+    untold = np.zeros((4, len(COLOURS)), dtype=bool)
+    untold[0, white] = True  # no white sofa
+    nouns = {text: row for row, text in enumerate(writer._texts)}
+    said = [
+        ("sofa", white),
+        ("furniture", white),
+        ("mug", white),
+        ("sofa", grey),
+        ("sofa", NO_COLOUR),
+        ("mug", NO_COLOUR),
+    ]
+    captions = Captions(
+        tuple(name for name, _ in said), np.array([nouns[name] for name, _ in said]), np.array([c for _, c in said])
+    )
+    crops = [(0, grey), (1, white), (0, NO_COLOUR)]  # grey sofa, white mug, sofa
+    categories, colours = (np.array([crop[k] for crop in crops]) for k in (0, 1))
+    assert writer.untold_of(categories, colours, captions, untold).tolist() == [
+        [True, True, False, False, False, False],  # "white sofa" is not told from a grey one
+        [True, True, False, False, True, False],  # nor "sofa" from a white mug: it may be white, too
+        [True, True, False, False, False, False],
+    ]
+
+
+def test_batches_leave_open_what_the_crops_leave_open(patches: Patches) -> None:
+    patches = painted(patches)
+    sofa, white = patches.names.index("sofa"), COLOURS.index("white")
+    shown = (patches.categories != sofa) | (patches.colours != white)
+    columns = ("pixels", "boxes", "limits", "lengths", "categories", "colours", "visible")
+    patches = replace(patches, **{name: getattr(patches, name)[shown] for name in columns})
+    writer = CaptionWriter(patches.names, COLOURS, WORDS)
+    preprocessing = build_untrained("zavis-tiny").preprocessing
+    labels = CropBatches(patches, writer, preprocessing, MatcherSettings(batch=200)).draw(0, 32).labels
+    is_sofa, is_white = labels.categories == sofa, labels.colours == white
+    assert is_sofa.any()
+    assert is_white.any()
+    assert torch.equal(labels.untold_colours.any(dim=1), is_sofa)
+    assert labels.untold_colours[is_sofa, white].all()
+    assert torch.equal(labels.untold_categories.any(dim=1), is_white)
+    assert labels.untold_categories[is_white, sofa].all()
 
 
 def test_backgrounds_overlap_nothing_much() -> None:

@@ -12,8 +12,9 @@ from torch import Tensor
 from zavis_bt.errors import InputError
 from zavis_bt.perception.clip.augment import boxes_near, coarsen, cut_squares, repaint, vary_light
 from zavis_bt.perception.clip.captions import NO_COLOUR, CaptionWriter
-from zavis_bt.perception.clip.colours import many_coloured
+from zavis_bt.perception.clip.colours import Pair, many_coloured, untold_pairs
 from zavis_bt.perception.clip.crops import Preprocessing
+from zavis_bt.perception.clip.heads import Labels
 from zavis_bt.perception.clip.patches import Patches
 from zavis_bt.perception.clip.settings import MatcherSettings
 
@@ -24,16 +25,13 @@ class CropBatch:
 
     images: Tensor
     """(n, 3, s, s) as the image tower reads them."""
-    categories: Tensor
-    """(n,) indices."""
-    colours: Tensor
-    """(n,) indices or `NO_COLOUR`."""
+    labels: Labels
     texts: tuple[str, ...]
     """(m,) m ≥ n; the i-th is crop i's."""
     true: Tensor
     """(n, m) whether a caption is true of a crop."""
     possible: Tensor
-    """(n, m) whether it is or may be, for all that is known of the crop's colour."""
+    """(n, m) whether it is or may be, for all that is known of the crop's colour or told of colours of its category."""
 
 
 class CropBatches:
@@ -53,7 +51,9 @@ class CropBatches:
         sight = patches.visible[self._things] / (2 * settings.least_visible)
         weights = np.minimum(sight, 1.0) / np.bincount(kinds)[kinds]
         self._cumulative = np.cumsum(weights) / weights.sum()
-        self._paintable = _paintable(patches)
+        pairs = _pairs(patches)
+        self._paintable = np.isin((*patches.names, "", ""), [*many_coloured(pairs)])
+        self._untold = _untold(patches, pairs)
 
     def draw(self, step: int, size: int) -> CropBatch:
         """Return the batch of a step, always the same one, with images of that side [px]."""
@@ -69,9 +69,15 @@ class CropBatches:
         captions = self._writer.write(categories, colours, rng)
         true = self._writer.true_of(categories[:n], colours[:n], captions)
         possible = true | (repainted[:, None] & self._writer.true_in_some_colour(categories[:n], captions))
+        possible |= self._writer.untold_of(categories[:n], colours[:n], captions, self._untold)
         images = self._images(rows, torch.from_numpy(repainted), size, generator)
-        shown, painted = torch.from_numpy(categories[:n]), torch.from_numpy(colours[:n])
-        return CropBatch(images, shown, painted, captions.texts, torch.from_numpy(true), torch.from_numpy(possible))
+        labels = self._labels_of(categories[:n], colours[:n])
+        return CropBatch(images, labels, captions.texts, torch.from_numpy(true), torch.from_numpy(possible))
+
+    def _labels_of(self, categories: NDArray[np.intp], colours: NDArray[np.intp]) -> Labels:
+        of_category = self._untold[categories]
+        of_colour = self._untold.T[colours] & (colours != NO_COLOUR)[:, None]
+        return Labels(*(torch.from_numpy(each) for each in (categories, colours, of_colour, of_category)))
 
     @property
     def _labels(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -93,9 +99,16 @@ class CropBatches:
         return ((squares - self._mean) / self._std * inside).contiguous(memory_format=torch.channels_last)
 
 
-def _paintable(patches: Patches) -> NDArray[np.bool_]:
-    """Return whether each category, the two of background with them, comes in many colours."""
+def _pairs(patches: Patches) -> list[Pair]:
+    """Return the pairs of colour and category that the patches show."""
     pairs = np.unique(np.stack([patches.colours, patches.categories]), axis=1).T.tolist()
     names = (*patches.names, "", "")
-    many = many_coloured((patches.colour_names[c], names[k]) for c, k in pairs if c != NO_COLOUR)
-    return np.isin(names, [*many])
+    return [(patches.colour_names[colour], names[category]) for colour, category in pairs if colour != NO_COLOUR]
+
+
+def _untold(patches: Patches, pairs: list[Pair]) -> NDArray[np.bool_]:
+    """Return whether the patches say nothing of a category (or of background) in a colour, (k + 2, c)."""
+    table = np.zeros((len(patches.names) + 2, max(len(patches.colour_names), 1)), dtype=bool)
+    for colour, category in untold_pairs(pairs):
+        table[patches.names.index(category), patches.colour_names.index(colour)] = True
+    return table

@@ -97,6 +97,33 @@ class CaptionWriter:
         nouns: NDArray[np.bool_] = self.truth[captions.nouns][:, categories].T
         return nouns
 
+    def untold_of(
+        self,
+        categories: NDArray[np.intp],
+        colours: NDArray[np.intp],
+        captions: Captions,
+        untold: NDArray[np.bool_],
+    ) -> NDArray[np.bool_]:
+        """Return whether training says nothing of caption j for crop i, (n, m).
+
+        Such a caption names the crop's category in an untold colour of it, or only categories that are untold in the
+        crop's colour.
+
+        Args:
+            categories: (n,) indices.
+            colours: (n,) indices or `NO_COLOUR`.
+            captions: m of them.
+            untold: (k + 2, c) the pairs of category and colour that training says nothing of.
+        """
+        none = np.zeros((len(untold), 1), dtype=bool)
+        padded = np.hstack([untold, none])  # no colour is the last, which `NO_COLOUR` counts to
+        other_colour = self.true_in_some_colour(categories, captions) & padded[categories][:, captions.colours]
+        of_noun = self.truth[captions.nouns]
+        all_untold = of_noun.any(axis=1)[:, None] & ~(of_noun.astype(np.float32) @ ~padded > 0)
+        says_it = (captions.colours == NO_COLOUR) | (captions.colours == colours[:, None])
+        only: NDArray[np.bool_] = other_colour | (all_untold.T[colours] & says_it)
+        return only
+
     def _noun(self, text: str, categories: Sequence[str]) -> int:
         self._texts.append(text)
         self._rows.append(np.isin(self.categories, [*categories]))

@@ -1,4 +1,4 @@
-"""Which categories come in many colours, and which of their pairs training leaves out to be measured by."""
+"""Which categories come in many colours, and which of their pairs training leaves out or says nothing of."""
 
 from __future__ import annotations
 
@@ -30,3 +30,14 @@ def held_out_pairs(pairs: Iterable[Pair]) -> frozenset[Pair]:
         for colour, category in seen
         if colour and category in many and zlib.crc32(f"{colour} {category}".encode()) % 10 == 0
     )
+
+
+def untold_pairs(pairs: Iterable[Pair]) -> frozenset[Pair]:
+    """Return the pairs that are never seen of categories that come in many colours: they may well exist.
+
+    Training must not learn from their absence. Otherwise whoever saw grey sofas but no white one learns that what has
+    a sofa's shape is grey, however bright.
+    """
+    seen = frozenset(pairs)
+    colours = frozenset(colour for colour, _ in seen if colour)
+    return frozenset((colour, category) for category in many_coloured(seen) for colour in colours) - seen

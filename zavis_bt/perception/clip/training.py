@@ -17,7 +17,7 @@ from zavis_bt.errors import InputError
 from zavis_bt.perception.clip.batches import CropBatch, CropBatches
 from zavis_bt.perception.clip.captions import CaptionWriter
 from zavis_bt.perception.clip.half_size import can_halve, reading_half_size
-from zavis_bt.perception.clip.heads import LabelHeads, label_loss
+from zavis_bt.perception.clip.heads import LabelHeads, label_loss, untold_colour_loss
 from zavis_bt.perception.clip.loading import Parts
 from zavis_bt.perception.clip.loss import contrastive_loss
 from zavis_bt.perception.clip.patches import Patches
@@ -30,6 +30,7 @@ from zavis_bt.perception.training.precision import mixed_precision
 KEPT = KeptState("zavis-matcher-training/1", "zavis matcher train")
 _MOST_SCALE = math.log(100)  # of the cosines, as in CLIP
 _HEADS = 0.5  # weight of the classifiers beside the text tower, falling to nothing
+_UNTOLD = 0.1  # weight of what excludes untold colours too firmly
 _RISE = 60  # steps over which the learning rate rises
 
 
@@ -171,12 +172,14 @@ class MatcherTraining:
             encoded[[rows[text] for text in some]] for some in (self._names, self._colours, batch.texts)
         )
         scale = self.network.get_parameter("logit_scale").exp()
-        category, colour = batch.categories.to(self._device), batch.colours.to(self._device)
+        labels = batch.labels.to(self._device)
         true, possible = batch.true.to(self._device), batch.possible.to(self._device)
         contrast = contrastive_loss(images, captions, true, possible, scale)
-        naming = label_loss(scale * images @ names.T, scale * images @ colours.T, category, colour)
-        heads = self._heads.loss(vectors, category, colour)
-        right = (images @ names.T).argmax(dim=1) == category
+        of_colour = scale * images @ colours.T
+        naming = label_loss(scale * images @ names.T, of_colour, labels)
+        naming = naming + _UNTOLD * untold_colour_loss(of_colour, labels)
+        heads = self._heads.loss(vectors, labels)
+        right = (images @ names.T).argmax(dim=1) == labels.categories
         figures = {"contrast": contrast, "naming": naming, "accuracy": right.float().mean(), "scale": scale}
         loss = contrast + naming + _HEADS * (1 - share) * heads
         return loss, {name: float(value.detach()) for name, value in figures.items()}
