@@ -10,7 +10,8 @@ torch = pytest.importorskip("torch")
 
 from zavis_bt.cli.detector import app  # needs torch
 from zavis_bt.errors import InputError
-from zavis_bt.perception.detector import load_detector
+from zavis_bt.perception.detector import DetectorConfig, DetectorNetwork, load_detector, save_detector
+from zavis_bt.perception.detector.building import build_network
 from zavis_bt.perception.models import find_weights
 
 
@@ -64,6 +65,32 @@ def test_a_trained_detector_brings_its_classes_and_method_along(tmp_path: Path, 
     assert str(error).startswith(f"{option[0]}: zavis-tiny-detector of --start brings this along")
 
 
+def a_detector(file: Path, seed: int, *known: str) -> DetectorNetwork:
+    network = build_network(DetectorConfig(known), seed)
+    save_detector(network, file, {"seed": seed})
+    return network
+
+
+def test_the_mean_of_detectors_has_the_mean_of_their_weights(tmp_path: Path) -> None:
+    files = [tmp_path / name for name in ("one.safetensors", "two.safetensors", "mean.safetensors")]
+    one, two = (a_detector(file, seed, "sofa", "sink").state_dict() for seed, file in enumerate(files[:2]))
+    result = detector("average", *map(str, files[:2]), "--out", str(files[2]))
+    assert result.exit_code == 0, result.exception
+    mean, facts = load_detector(files[2])
+    for name, value in mean.state_dict().items():
+        torch.testing.assert_close(value, (one[name] + two[name]) / 2 if value.is_floating_point() else two[name])
+    assert facts == {"seed": 1, "average_of": 2}
+
+
+def test_detectors_of_other_classes_have_no_mean(tmp_path: Path) -> None:
+    files = [tmp_path / name for name in ("one.safetensors", "two.safetensors")]
+    a_detector(files[0], 0, "sofa", "sink")
+    a_detector(files[1], 0, "sink", "sofa")
+    error = detector("average", *map(str, files), "--out", str(tmp_path / "mean.safetensors")).exception
+    assert isinstance(error, InputError)
+    assert "differ in method or classes" in str(error)
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -72,6 +99,8 @@ def test_a_trained_detector_brings_its_classes_and_method_along(tmp_path: Path, 
         (("train", "sim:4", "--out", "x", "--device", "tpu"), "'tpu' is unknown (cpu or cuda)"),
         (("train", "nowhere", "--out", "x"), "there is no such data set"),
         (("export", "nowhere", "x.safetensors"), "holds no training"),
+        (("average", "zavis-tiny-detector", "-o", "x.safetensors"), "name two or more"),
+        (("average", "zavis-tiny-detector", "-o", "x.pt"), "needs to end in .safetensors"),
         (("export", "nowhere", "x.pt"), "needs to end in .safetensors"),
     ],
 )

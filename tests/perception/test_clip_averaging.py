@@ -8,7 +8,8 @@ import torch
 from torch import Tensor
 
 from zavis_bt.errors import InputError
-from zavis_bt.perception.clip.averaging import averaged_facts, averaged_weights
+from zavis_bt.perception.clip.averaging import averaged_facts
+from zavis_bt.perception.training.averaging import averaged_weights
 
 
 def weights(seed: int) -> dict[str, Tensor]:

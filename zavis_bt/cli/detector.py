@@ -163,10 +163,24 @@ def export(
     check_device("cpu")
     from zavis_bt.perception.detector.building import export_training
 
-    if out.suffix != ".safetensors":
-        raise InputError(f"OUT: {out} (needs to end in .safetensors)")
+    _check_weights_file("OUT", out)
     given = {"known_score": known_score, "unknown_score": unknown_score, "cdf": cdf}
     export_training(training, out, width, {name: value for name, value in given.items() if value is not None})
+    typer.echo(f"written: {out}")
+
+
+@app.command()
+def average(
+    detectors: Annotated[list[str], typer.Argument(metavar="DETECTOR...", help="Weights: names or files.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Weights file to write (.safetensors).")],
+) -> None:
+    """Write the mean of detectors of which one was taught further; it knows what each knew."""
+    check_device("cpu")
+    from zavis_bt.perception.detector.building import average_detectors
+    from zavis_bt.perception.models import find_weights
+
+    _check_weights_file("--out", out)
+    average_detectors([find_weights(detector) for detector in detectors], out)
     typer.echo(f"written: {out}")
 
 
@@ -185,6 +199,11 @@ def check_device(device: str) -> None:
         raise InputError(f"--device: '{device}' is unknown (cpu or cuda)")
     if device != "cpu" and not torch.cuda.is_available():
         raise InputError(f"--device: '{device}' is not there (choose cpu)")
+
+
+def _check_weights_file(name: str, out: Path) -> None:
+    if out.suffix != ".safetensors":
+        raise InputError(f"{name}: {out} (needs to end in .safetensors)")
 
 
 def _new_network(

@@ -131,9 +131,10 @@ def average(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the mean.")],
 ) -> None:
     """Write the mean of models that trained on from the same weights; it is mostly better than each of them."""
-    from zavis_bt.perception.clip.averaging import averaged_facts, averaged_weights
+    from zavis_bt.perception.clip.averaging import averaged_facts
     from zavis_bt.perception.clip.loading import load_parts, model_config, read_facts
     from zavis_bt.perception.clip.writing import write_model
+    from zavis_bt.perception.training.averaging import averaged_weights
 
     _check_new(out)
     parts = [load_parts(model, None) for model in models]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,8 @@ from zavis_bt.errors import InputError
 from zavis_bt.perception.detector.checkpoint import Checkpoint
 from zavis_bt.perception.detector.config import DetectorConfig
 from zavis_bt.perception.detector.network import DetectorNetwork
-from zavis_bt.perception.detector.weights_file import save_detector
+from zavis_bt.perception.detector.weights_file import load_detector, save_detector
+from zavis_bt.perception.training.averaging import averaged_weights
 
 FACTS = "facts.json"
 DEFAULT_KNOWN = (
@@ -80,6 +82,26 @@ def export_training(folder: Path, out: Path, width: int | None, choice: dict[str
     network.load_state_dict(state.weights)
     facts = folder / FACTS
     save_detector(network, out, json.loads(facts.read_text()) if facts.is_file() else {})
+
+
+def average_detectors(files: Sequence[Path], out: Path) -> None:
+    """Write the mean of detectors that trained on from the same weights, as one file.
+
+    Args:
+        files: Of the detectors; thresholds are the last one's.
+        out: File to write.
+
+    Raises:
+        InputError: A file is no detector's, there are fewer than two, or their classes or architectures differ.
+    """
+    opened = [load_detector(file) for file in files]
+    weights = averaged_weights([network.state_dict() for network, _ in opened])
+    network = opened[-1][0]
+    for file, (other, _) in zip(files, opened, strict=True):
+        if (other.config.method, other.config.known) != (network.config.method, network.config.known):
+            raise InputError(f"average: {file} and {files[-1]} differ in method or classes (name trainings of one)")
+    network.load_state_dict(weights)
+    save_detector(network, out, {**opened[-1][1], "average_of": len(files)})
 
 
 def _resnet(path: Path, config: DetectorConfig) -> dict[str, Tensor]:
