@@ -119,7 +119,8 @@ class CaptionWriter:
         padded = np.hstack([untold, none])  # no colour is the last, which `NO_COLOUR` counts to
         other_colour = self.true_in_some_colour(categories, captions) & padded[categories][:, captions.colours]
         of_noun = self.truth[captions.nouns]
-        all_untold = of_noun.any(axis=1)[:, None] & ~(of_noun.astype(np.float32) @ ~padded > 0)
+        told: NDArray[np.float32] = of_noun.astype(np.float32) @ (~padded).astype(np.float32)
+        all_untold: NDArray[np.bool_] = of_noun.any(axis=1, keepdims=True) & (told == 0)
         says_it = (captions.colours == NO_COLOUR) | (captions.colours == colours[:, None])
         only: NDArray[np.bool_] = other_colour | (all_untold.T[colours] & says_it)
         return only
