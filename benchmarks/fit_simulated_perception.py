@@ -287,7 +287,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("episodes", type=Path)
     parser.add_argument("--eyes", default="neural")
-    parser.add_argument("--count", type=int, default=400, help="frames")
+    parser.add_argument("--count", type=int, default=1000, help="frames")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, help="file for what was seen, used again if it is there")
     options = parser.parse_args()

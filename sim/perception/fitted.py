@@ -12,28 +12,28 @@ from sim.perception.curves import DetectorSettings, MatcherSettings
 
 FITTED_TO_NETWORKS = (
     DetectorSettings(
-        ceiling=0.95,
-        half_size=3.1,
-        slope=0.46,
-        short_side=(0.5, 6.5),
-        visible=(0.05, 0.48),
-        visible_furniture=(0.02, 0.03),
-        false_positives=3.7,
+        ceiling=0.96,
+        half_size=6.5,
+        slope=0.58,
+        short_side=(0.5, 4.5),
+        visible=(0.05, 0.25),
+        visible_furniture=(0.02, 0.022),
+        false_positives=3.5,
         most_false=8,
-        parts=0.34,
+        parts=0.32,
         jitter=0.1,
-        known_as_unknown=0.89,
-        unknown_as_known=0.04,
+        known_as_unknown=0.88,
+        unknown_as_known=0.05,
     ),
     MatcherSettings(
-        match=29.7,
-        background=19.5,
-        background_spread=3.7,
-        instance_spread=1.6,
-        view_spread=3.4,
-        small_loss=0.69,
+        match=30.0,
+        background=19.3,
+        background_spread=3.9,
+        instance_spread=2.1,
+        view_spread=3.2,
+        small_loss=0.9,
     ),
 )
 """Of detector and matcher."""
-FITTED_THRESHOLDS = MappingProxyType({"match": 29.0, "landmark": 33.2, "temperature": 1.05})
+FITTED_THRESHOLDS = MappingProxyType({"match": 29.0, "landmark": 33.3, "temperature": 0.96})
 """That belong to them: as many texts pass as pass those of the networks."""
