@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import typing
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from types import GenericAlias
+from typing import Any, Literal, get_args, get_origin
 
 from zavis_bt.tree.controls import SET
 from zavis_bt.tree.datatypes import assignable, type_name
@@ -94,7 +94,7 @@ def _write(name: str, type_: Any, unit: str, mark: Mark, symbols: dict[str, Symb
     elif known.role == "variable" and assignable(known.type, type_):
         symbols[name] = Symbol(name, "variable", type_, known.mark, known.unit or unit)
     elif known.role == "variable" and type(None) in (type_, known.type):
-        symbols[name] = Symbol(name, "variable", typing.Union[known.type, type_], known.mark, unit)  # noqa: UP007  # run time
+        symbols[name] = Symbol(name, "variable", known.type | type_, known.mark, unit)
     else:
         where = f"is {known.text} (line {known.mark.line})"
         library.faults.add(mark, "type", f"'{name}' {where}, but {type_name(type_)} is written here")
@@ -113,12 +113,12 @@ def literal_type(value: Any) -> Any:
     if isinstance(value, list):
         kinds = {literal_type(item) for item in value}
         kinds = {float} if kinds == {int, float} else kinds
-        return list[kinds.pop()] if len(kinds) == 1 else list[Any]  # type: ignore[misc]  # a type computed at run time
+        return GenericAlias(list, (kinds.pop() if len(kinds) == 1 else Any,))
     return Any if isinstance(value, dict) else type(value)
 
 
 def element_type(type_: Any) -> Any:
     """Return the type of a list's items."""
-    if typing.get_origin(type_) in (list, tuple):
-        return typing.get_args(type_)[0]
+    if get_origin(type_) in (list, tuple):
+        return get_args(type_)[0]
     return Any

@@ -40,7 +40,7 @@ class KeptState:
             state = torch.load(path, map_location="cpu", weights_only=True)
         except FileNotFoundError as error:
             raise InputError(f"{folder}: holds no training (begin one without --resume: {self.command})") from error
-        except Exception as error:  # whatever unpickling a broken file raises
+        except Exception as error:  # a broken pickle calls things with wrong arguments: any type
             first = str(error).partition("\n")[0]
             raise InputError(f"{path}: cannot be read: {first} (train again without --resume)") from error
         if not isinstance(state, dict) or state.get("form") != self.form:
