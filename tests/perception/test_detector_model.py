@@ -13,7 +13,8 @@ from safetensors.torch import load_file, save_file
 from zavis_bt.errors import InputError
 from zavis_bt.perception.detector import DetectorConfig, NeuralDetector, load_detector, save_detector
 from zavis_bt.perception.detector.building import build_network
-from zavis_bt.perception.detector.choosing import choose
+from zavis_bt.perception.detector.choosing import Chosen
+from zavis_bt.perception.detector.choosing import choose as choose_by
 from zavis_bt.perception.detector.config import Method, method_named
 from zavis_bt.perception.detector.mln import Mixture
 from zavis_bt.perception.detector.network import DetectorNetwork
@@ -35,6 +36,10 @@ def regions(*rows: tuple[list[float], list[float]], quality: float = 1.0) -> Reg
     logits = shares.clamp(min=1e-9).log()[:, None].repeat(1, 2, 1)
     weights = torch.full((len(rows), 2), 0.5).log()
     return Regions(boxes, Mixture(logits, weights), torch.full((len(rows),), quality), torch.zeros(len(rows), 4))
+
+
+def choose(boxes: Regions, made: DetectorNetwork) -> Chosen:
+    return choose_by(boxes, made, made.config.choice)
 
 
 SURE_CUP = [0.95, 0.01, 0.01, 0.01, 0.02]

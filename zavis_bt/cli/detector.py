@@ -184,6 +184,36 @@ def average(
     typer.echo(f"written: {out}")
 
 
+@app.command()
+def tune(
+    detector: Annotated[str, typer.Argument(metavar="DETECTOR", help="Weights: a name or a file.")],
+    data: Annotated[
+        str, typer.Argument(metavar="DATA", help="As for train; images that it neither learnt from nor is judged on.")
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Weights file to write (.safetensors).")],
+    most_loss: Annotated[float, typer.Option(min=0, max=1, help="Of K-mAP, against the best cut's.")] = 0.02,
+    images: Annotated[int | None, typer.Option(min=1, help="Only the first so many images.")] = None,
+) -> None:
+    """Set above which uncertainty things are unknown: the least WI for a small loss of K-mAP."""
+    check_device("cpu")
+    from zavis_bt.cli.detector_data import open_images
+    from zavis_bt.cli.detector_eval import print_cuts
+    from zavis_bt.cli.detector_progress import progress_bar
+    from zavis_bt.perception.detector import NeuralDetector, save_detector
+    from zavis_bt.perception.detector.tuning import best_cut, judge_cuts
+    from zavis_bt.perception.models import find_weights
+
+    _check_weights_file("--out", out)
+    opened, dataset = NeuralDetector.load(find_weights(detector)), open_images(data)
+    with progress_bar(min(images or len(dataset), len(dataset))) as progress:
+        judged = judge_cuts(opened, dataset, images=images, progress=progress)
+    best, network = best_cut(judged, most_loss), opened.network
+    print_cuts(judged, best)
+    network.config = network.config.with_choice(cdf=best.cdf)
+    save_detector(network, out, {**opened.facts, "cut_set_on": dataset.name})
+    typer.echo(f"written: {out}, unknown above a CDF of {best.cdf:g}")
+
+
 def check_device(device: str) -> None:
     """Refuse devices that are not there, and work without the libraries for it.
 

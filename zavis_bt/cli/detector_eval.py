@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from zavis_bt.perception.datasets import DetectionDataset
     from zavis_bt.perception.detector import NeuralDetector
+    from zavis_bt.perception.detector.tuning import Cut
     from zavis_bt.perception.evaluation import OpenSetResult
 
 
@@ -52,27 +55,46 @@ def judge_detector(
     return result
 
 
+def print_cuts(judged: Sequence[Cut], best: Cut) -> None:
+    """Print what each cut of the uncertainty reaches, the best one marked."""
+    from rich.console import Console
+
+    table = _table("CDF")
+    for cut in judged:
+        table.add_row(f"{cut.cdf:g}", *_measures(cut.result), style="bold" if cut is best else "")
+    Console(highlight=False).print(table)
+
+
 def _print(result: OpenSetResult, facts: dict[str, Any], open_set: bool, *, rendered: bool) -> None:
     from rich.console import Console
-    from rich.table import Table
 
-    table = Table(box=None, header_style="dim")
-    rows = {
-        "K-mAP@0.5": _share(result.k_map),
-        "U-Recall": _share(result.u_recall) if open_set else "-",
-        "U-Precision": _share(result.u_precision) if open_set else "-",
-        "WI": f"{result.wi:.4f}" if math.isfinite(result.wi) else "-",
-        "A-OSE": str(result.a_ose),
-    }
-    for name in rows:
-        table.add_column(name, justify="right")
-    table.add_row(*rows.values())
+    table = _table()
+    table.add_row(*_measures(result, open_set=open_set))
     console = Console(highlight=False)
     console.print(table)
     pixels = "rendered pixels" if rendered else "photographs"
     trained = ", trained on rendered pixels" if facts.get("rendered") else ""
     console.print(
         f"{result.images} images ({pixels}), {facts['method']} at width {facts['width']}{trained}", style="dim"
+    )
+
+
+def _table(*first: str) -> Table:
+    from rich.table import Table
+
+    table = Table(box=None, header_style="dim")
+    for name in (*first, "K-mAP@0.5", "U-Recall", "U-Precision", "WI", "A-OSE"):
+        table.add_column(name, justify="right")
+    return table
+
+
+def _measures(result: OpenSetResult, *, open_set: bool = True) -> tuple[str, ...]:
+    return (
+        _share(result.k_map),
+        _share(result.u_recall) if open_set else "-",
+        _share(result.u_precision) if open_set else "-",
+        f"{result.wi:.4f}" if math.isfinite(result.wi) else "-",
+        str(result.a_ose),
     )
 
 

@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 from torchvision.ops import batched_nms, box_iou
 
+from zavis_bt.perception.detector.config import Choice
 from zavis_bt.perception.detector.mln import aleatoric, epistemic
 from zavis_bt.perception.detector.network import DetectorNetwork
 from zavis_bt.perception.detector.rois import Regions
@@ -36,10 +37,10 @@ class Chosen:
         )
 
 
-def choose(regions: Regions, network: DetectorNetwork) -> Chosen:
+def choose(regions: Regions, network: DetectorNetwork, choice: Choice) -> Chosen:
     """Return the detections among one image's boxes."""
     config, mixture = network.config, regions.mixture
-    known, choice = len(config.known), config.choice
+    known = len(config.known)
     shares = mixture.mean()
     scores, labels = shares[:, :known].max(dim=1)
     unsure, vague = epistemic(mixture), aleatoric(mixture)
@@ -54,12 +55,11 @@ def choose(regions: Regions, network: DetectorNetwork) -> Chosen:
         scores = torch.where(strange, thing * regions.quality**choice.quality_power, scores)
     conditional = shares[:, :known] / shares[:, :known].sum(dim=1, keepdim=True).clamp(min=1e-12)
     everything = Chosen(regions.boxes, labels, scores, conditional, unsure, vague)
-    return _thinned(everything, network)
+    return _thinned(everything, known, choice)
 
 
-def _thinned(found: Chosen, network: DetectorNetwork) -> Chosen:
-    """Keep what is good enough and not said twice."""
-    known, choice = len(network.config.known), network.config.choice
+def _thinned(found: Chosen, known: int, choice: Choice) -> Chosen:
+    """Keep what is good enough and not said twice; ``known`` is the number of known classes."""
     sides = (found.boxes[:, 2:] - found.boxes[:, :2]).amin(dim=1)
     least = torch.where(found.labels < known, choice.known_score, choice.unknown_score)
     found = found.take(torch.where((found.scores >= least) & (sides >= 1))[0])

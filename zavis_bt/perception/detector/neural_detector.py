@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from zavis_bt.errors import InputError
 from zavis_bt.perception.detector.choosing import Chosen, choose
+from zavis_bt.perception.detector.config import Choice
 from zavis_bt.perception.detector.network import DetectorNetwork
 from zavis_bt.perception.detector.weights_file import load_detector
 from zavis_bt.types import UNKNOWN_CLASS, Box, Detection, RgbdFrame
@@ -63,14 +65,22 @@ class NeuralDetector:
         Raises:
             InputError: It is no image.
         """
+        return self.detect_by(rgb, [self.network.config.choice])[0]
+
+    def detect_by(self, rgb: NDArray[np.uint8], choices: Sequence[Choice]) -> list[list[Detection]]:
+        """Return the same for each of several ways to choose among the boxes of one look.
+
+        Raises:
+            InputError: It is no image.
+        """
         if rgb.ndim != 3 or rgb.shape[2] != 3 or not rgb.size:
             raise InputError(f"image: has the shape {rgb.shape} (height, width and 3 colours are needed)")
         small, scale = _fitted(rgb, self.network.config.width)
         image = torch.from_numpy(small).to(self._device).permute(2, 0, 1)[None].float() / 255
         with torch.inference_mode():
             regions = self.network(image.contiguous(memory_format=torch.channels_last))[0]
-            found = choose(regions, self.network)
-        return self._detections(found, scale, rgb.shape[1::-1])
+            chosen = [choose(regions, self.network, choice) for choice in choices]
+        return [self._detections(found, scale, rgb.shape[1::-1]) for found in chosen]
 
     def _detections(self, found: Chosen, scale: tuple[float, float], size: tuple[int, ...]) -> list[Detection]:
         boxes = (found.boxes.cpu().double().numpy() * (*scale, *scale)).clip(0, (*size, *size))

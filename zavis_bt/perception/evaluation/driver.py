@@ -42,13 +42,18 @@ def collect(
     predictions: list[Prediction] = []
     for done, index in enumerate(range(len(dataset)) if indices is None else indices, start=1):
         rgb = dataset.image(index, width=width)
-        full = dataset.size(index)
-        x, y = full[0] / rgb.shape[1], full[1] / rgb.shape[0]
-        for found in predict(rgb):
-            box = Box(found.box.x0 * x, found.box.y0 * y, found.box.x1 * x, found.box.y1 * y)
-            predictions.append(Prediction(index, box, found.label, found.score))
+        predictions += predictions_of(index, predict(rgb), rgb, dataset.size(index))
         progress(done)
     return predictions
+
+
+def predictions_of(
+    image: int, found: Sequence[Detection], rgb: NDArray[np.uint8], size: tuple[int, int]
+) -> list[Prediction]:
+    """Return detections in an image (h, w, 3) that was scaled down, in pixels of the full one, which has that size."""
+    x, y = size[0] / rgb.shape[1], size[1] / rgb.shape[0]
+    boxes = [Box(one.box.x0 * x, one.box.y0 * y, one.box.x1 * x, one.box.y1 * y) for one in found]
+    return [Prediction(image, box, one.label, one.score) for box, one in zip(boxes, found, strict=True)]
 
 
 def evaluate(
