@@ -97,14 +97,20 @@ def train_matcher(given: argparse.Namespace) -> Path:
 
 
 def train_detector(given: argparse.Namespace) -> Path:
-    """Return the file of the trained detector, whose labels of unknown things come from the trained matcher."""
+    """Return the file of the trained detector, whose labels of unknown things come from the trained matcher.
+
+    Its cut of the uncertainty is set on the validation images.
+    """
     folder: Path = given.out / "detector"
+    tuned = folder / "tuned.safetensors"
     if not (folder / "detector.safetensors").exists():
         resume = ["--resume"] if (folder / "checkpoint.pt").exists() else []
         length = ("--warm-up", given.warm_up, "--iterations", given.iterations)
         clip = ("--clip", given.out / "matcher")
         zavis("detector", "train", given.out / "train", "--out", folder, *clip, *length, *resume)
-    return folder / "detector.safetensors"
+    if not tuned.exists():
+        zavis("detector", "tune", folder / "detector.safetensors", given.out / "val", "--out", tuned)
+    return tuned
 
 
 def install(matcher: Path, detector: Path) -> None:
