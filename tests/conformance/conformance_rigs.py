@@ -69,6 +69,8 @@ class Rig:
     """Of a measured rate [rad/s]."""
     angle_error: float = 1e-6
     """Of a joint at its target [rad]."""
+    turning_error: float = 1e-3
+    """Of ranges scanned while turning: half a scan's time would be 0.075 [m]."""
     first: Pose2D = field(init=False)
     """By odometry, when the robot was opened."""
 
@@ -182,6 +184,7 @@ def _wire(stack: ExitStack, folder: Path, start: Pose2D) -> Rig:
         linear_error=0.01,
         angular_error=0.03,
         angle_error=0.005,
+        turning_error=0.05,
     )
 
 

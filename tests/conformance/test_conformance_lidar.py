@@ -119,7 +119,7 @@ def test_a_scan_taken_while_turning_belongs_to_the_pose_at_its_stamp(rig: Rig) -
         assert scan is not None
         pose = begin @ (odometry.inverse() @ rig.robot.base.pose_at(scan.stamp))
         errors.append(float(np.median(differences(scan, expected(rig, scan, pose)))))
-    assert np.median(errors) < 0.03
+    assert np.median(errors) < rig.turning_error
 
 
 def test_nothing_blocks(rig: Rig) -> None:
