@@ -77,8 +77,10 @@ class Page:
         return answer["result"].get("value")
 
     def wait_for(self, script: str, timeout: float = 10.0) -> object:
-        """Return the value of an expression as soon as it is true."""
-        return self._until(lambda: self.evaluate(script), timeout, script)
+        """Return the value of an expression as soon as it is true; it may read things that are not there yet."""
+        missing = "if (error instanceof TypeError) return null; throw error"
+        patient = f"(() => {{ try {{ return ({script}) }} catch (error) {{ {missing} }} }})()"
+        return self._until(lambda: self.evaluate(patient), timeout, script)
 
     def screenshot(self) -> bytes:
         """Return the page as PNG."""
